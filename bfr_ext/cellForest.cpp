@@ -105,16 +105,17 @@ std::vector<Polyline> CellForest::GetFacePolylines(Index face) const {
     return edges;
 }
 
-Tessellation CellForest::GetTessellation(Index face, Tessellation::Options options) const {
+LevelTessellation CellForest::GetTessellation(Index face,
+                                              LevelTessellation::Options options) const {
     if (GetTree(face).GetFaceSize() != _level.GetLevel().GetFaceSize(face)) {
-        return Tessellation(Parameterization(), 0);
+        return LevelTessellation(Parameterization(), 0);
     }
     std::vector<int> levels;
     if (findLevels(face, levels)) {
-        return Tessellation(Parameterization(GetTree(face).GetFaceSize()), int(levels.size()),
-                            levels.data(), options);
+        return LevelTessellation(Parameterization(GetTree(face).GetFaceSize()), int(levels.size()),
+                                 levels.data(), options);
     }
-    return Tessellation(GetTree(face), GetFacePolylines(face).data(), options);
+    return LevelTessellation(GetTree(face), GetFacePolylines(face).data(), options);
 }
 
 // Those of the edges and of the inside, where there are such.

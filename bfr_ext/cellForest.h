@@ -2,7 +2,7 @@
 #ifndef OPENSUBDIVHEX_BFR_EXT_CELL_FOREST_H
 #define OPENSUBDIVHEX_BFR_EXT_CELL_FOREST_H
 
-#include "tessellation.h"
+#include "levelTessellation.h"
 
 #include "far_ext/topologyRefiner.h"
 
@@ -67,17 +67,18 @@ public:
     std::vector<Polyline> GetFacePolylines(Index face) const;
     /// \brief The tessellation of a face; invalid where not IsMatched().
     ///
-    /// It is that of levels (Tessellation::GetLevels()) where the cells and the polylines of the face are those
+    /// It is that of levels (LevelTessellation::GetLevels()) where the cells and the polylines of the face are those
     /// of some, as mostly in flat parts of a mesh: its points are evaluated faster.
-    Tessellation GetTessellation(Index face,
-                                 Tessellation::Options options = Tessellation::Options()) const;
+    LevelTessellation
+    GetTessellation(Index face,
+                    LevelTessellation::Options options = LevelTessellation::Options()) const;
 
     /// Points that faces share, or might share: base vertices and the inner points of edges.
     Number GetNumBoundaryPoints() const { return _firstPoints.back(); }
     /// The first inner point of an edge; those of GetPolyline() follow one another.
     Number GetFirstEdgePoint(Index edge) const { return _firstPoints[std::size_t(edge)]; }
     /// \brief Writes the numbers of the points on the boundary of a face, in the order of its
-    /// tessellation's coordinates: for Tessellation::TransformFacetCoordIndices().
+    /// tessellation's coordinates: for LevelTessellation::TransformFacetCoordIndices().
     /// \return  how many they are; 0, with nothing written, where GetNumBoundaryPoints() is above 2^31 - 1
     int GetBoundaryPoints(Index face, int points[]) const;
 

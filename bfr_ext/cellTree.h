@@ -14,7 +14,7 @@ namespace OpenSubdivHex::BfrExt {
 /// the same kind of cell, and on its side of each edge one half of a hexagon.  Of such a *half cell*,
 /// which has a long edge and three others, it makes the same half of the hexagon's F-face and half
 /// cells at the three edges.  What the cells that are not refined any further cover is the base face,
-/// without gaps and overlaps: any tree is a tessellation (Tessellation), and needs no balance.
+/// without gaps and overlaps: any tree is a tessellation (LevelTessellation), and needs no balance.
 ///
 /// Corners of half cells are counter-clockwise from the start of the long edge, which is side 0.
 ///

@@ -4,6 +4,8 @@
 
 #include "far_ext/export.h"
 
+#include <opensubdiv/bfr/parameterization.h>
+
 namespace OpenSubdivHex::BfrExt {
 
 /// \brief The parameter plane of a base face, with the names of Bfr::Parameterization.
@@ -49,7 +51,45 @@ public:
         uv[1] = REAL(coords[1]);
     }
 
+    /// @name Bfr's parameterizations of the same face
+    /// @{
+
+    /// \brief That of which Bfr::Tessellations are made for Surface::Evaluate(): of a quad the unit square, of a
+    /// triangle the right-angled one of Loop, and of others the sub-faces of Catmull-Clark.
+    ///
+    /// Invalid for an invalid one, and for more vertices than Bfr allows.
+    OpenSubdiv::Bfr::Parameterization GetBfr() const;
+
+    /// \brief Writes where (u, v) of Bfr lies in the parameter plane: the same in quads, and in triangles a linear
+    /// map of it.  A sub-face is mapped bilinearly to the kite of its corner, the centre of the face, and the
+    /// middles of two edges between them.
+    ///
+    /// Sub-faces are found as Bfr::Parameterization finds them; (u, v) outside of the face are mapped by the same
+    /// functions.  Nothing but NaN is written where u or v is not finite, or \p bfr is invalid.
+    ///
+    /// \param bfr          of any face
+    /// \param bfrUv        two numbers
+    /// \param uv           two numbers, may be \p bfrUv
+    /// \param derivatives  four numbers, or null: those of u and v by Bfr's u, then by its v.  With them
+    ///                     derivatives d of a surface are, by Bfr's u, d[0] du + d[1] dv, and by its
+    ///                     v, d[2] du + d[3] dv
+    template <typename REAL>
+    static void ConvertFromBfr(OpenSubdiv::Bfr::Parameterization const &bfr, REAL const bfrUv[2],
+                               REAL uv[2], REAL derivatives[4] = nullptr) {
+        double const from[2] = {double(bfrUv[0]), double(bfrUv[1])};
+        double to[6];
+        convertFromBfr(bfr, from, to);
+        uv[0] = REAL(to[0]);
+        uv[1] = REAL(to[1]);
+        for (int i = 0; derivatives && i < 4; ++i) {
+            derivatives[i] = REAL(to[2 + i]);
+        }
+    }
+    /// @}
+
 private:
+    static void convertFromBfr(OpenSubdiv::Bfr::Parameterization const &bfr, double const bfrUv[2],
+                               double result[6]);
     void findCoords(int edge, double start, double end, double uv[2]) const;
 
     int _faceSize = 0;

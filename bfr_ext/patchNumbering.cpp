@@ -16,7 +16,7 @@ namespace {
 
 // How many of what a tessellation has.
 struct PatchCounts {
-    explicit PatchCounts(Tessellation const &tessellation)
+    explicit PatchCounts(LevelTessellation const &tessellation)
         : numInteriorPoints(tessellation.GetNumInteriorCoords()),
           numFacets(tessellation.GetNumFacets()),
           numFacetVertices(tessellation.GetNumFacetVertices()), maxFacetSize(0) {
@@ -114,7 +114,7 @@ PatchNumbering::SectionNumbers::SectionNumbers(internal::FaceSections const &sec
     std::map<std::pair<int, int>, Number> firstPointOfEdge;
     std::vector<int> numInteriorPoints;
     for (int section = 0; section < sections.GetNumSections(); ++section) {
-        Tessellation const tessellation = makeTessellation(section);
+        LevelTessellation const tessellation = makeTessellation(section);
         PatchCounts const counts(tessellation);
         _firstFacet.push_back(_firstFacet.back() + counts.numFacets);
         _firstFacetVertex.push_back(_firstFacetVertex.back() + counts.numFacetVertices);
@@ -183,9 +183,9 @@ std::unique_ptr<PatchNumbering> PatchNumbering::Create(PatchStream<REAL> const &
     std::map<std::vector<int>, std::shared_ptr<SectionNumbers const>> sectionsOfLevels;
     auto const makeSections = [&](Index face) {
         auto const sections = stream.makeSections(face);
-        Tessellation::Options const options = stream.GetOptions().GetTessellationOptions();
+        LevelTessellation::Options const options = stream.GetOptions().GetTessellationOptions();
         return std::make_shared<SectionNumbers const>(
-            *sections, [&](int section) { return Tessellation(*sections, section, options); });
+            *sections, [&](int section) { return LevelTessellation(*sections, section, options); });
     };
     std::vector<int> levels;
     for (Index face = 0; face < base.GetNumFaces(); ++face) {
@@ -284,7 +284,7 @@ PatchNumbering::Run PatchNumbering::makeEdgeRun(Index face, int local, int place
     return {place, count, isForward ? 1 : -1, point, isFirst && findOwner(edgeFaces) == face};
 }
 
-void PatchNumbering::GetRuns(Index face, Tessellation const &tessellation,
+void PatchNumbering::GetRuns(Index face, LevelTessellation const &tessellation,
                              std::vector<Run> &runs) const {
     runs.clear();
     Far::ConstIndexArray const verts = _factory.GetLevel().GetFaceVertices(face);
@@ -334,7 +334,7 @@ void PatchNumbering::GetRuns(Index face, Tessellation const &tessellation,
          firstPoint + (sections ? sections->GetFirstPoint(tessellation.GetSection()) : 0), true});
 }
 
-void PatchNumbering::GetPoints(Index face, Tessellation const &tessellation,
+void PatchNumbering::GetPoints(Index face, LevelTessellation const &tessellation,
                                Number points[]) const {
     std::vector<Run> runs;
     GetRuns(face, tessellation, runs);

@@ -77,9 +77,9 @@ public:
     /// \param face          the base face
     /// \param tessellation  its tessellation in the stream, or that of a section
     /// \param runs          is replaced
-    void GetRuns(Index face, Tessellation const &tessellation, std::vector<Run> &runs) const;
+    void GetRuns(Index face, LevelTessellation const &tessellation, std::vector<Run> &runs) const;
     /// Writes the point of each place of a patch: tessellation.GetNumCoords() numbers.
-    void GetPoints(Index face, Tessellation const &tessellation, Number points[]) const;
+    void GetPoints(Index face, LevelTessellation const &tessellation, Number points[]) const;
 
 private:
     class SectionNumbers;

@@ -90,7 +90,7 @@ public:
             _ownFactory = _stream._types->Get();
             _factory = _ownFactory.get();
         }
-        Tessellation const &tessellation =
+        LevelTessellation const &tessellation =
             section < 0 ? findTessellation(face) : findTessellation(face, section);
         if (!evaluatePoints(face, tessellation, status) ||
             !evaluateValues(face, tessellation, status)) {
@@ -103,7 +103,7 @@ public:
     }
 
 private:
-    Tessellation const &findTessellation(Index face) {
+    LevelTessellation const &findTessellation(Index face) {
         if (_stream._forest) {
             return findTree(face);
         }
@@ -116,7 +116,7 @@ private:
         return _plan->tessellation;
     }
 
-    Tessellation const &findTree(Index face) {
+    LevelTessellation const &findTree(Index face) {
         auto const make = [&] { return _stream.MakeTessellation(face); };
         if (!internal::PatchPlans::IsShared(_stream._forest->GetTree(face))) {
             _tessellation.reset();
@@ -131,7 +131,7 @@ private:
         return _plan->tessellation;
     }
 
-    Tessellation const &findTessellation(Index face, int section) {
+    LevelTessellation const &findTessellation(Index face, int section) {
         _tessellation.reset();
         _plan.reset();
         _stream.getLevels(face, _levels);
@@ -143,7 +143,7 @@ private:
         }
         if (_stream._forest) {
             return _tessellation.emplace(
-                Tessellation(*_sections, section, _stream._options.GetTessellationOptions()));
+                LevelTessellation(*_sections, section, _stream._options.GetTessellationOptions()));
         }
         _plan = _stream._plans->Find(*_sections, section);
         _planLevels.clear();
@@ -162,7 +162,7 @@ private:
                            : _factory->initKept(face, interpolation, channel, _surface);
     }
 
-    bool evaluatePoints(Index face, Tessellation const &tessellation, CallStatus &status) {
+    bool evaluatePoints(Index face, LevelTessellation const &tessellation, CallStatus &status) {
         status = initSurface(face, FarExt::Interpolation::Vertex, -1);
         if (!status.IsOk()) {
             return false;
@@ -192,7 +192,7 @@ private:
         return true;
     }
 
-    bool evaluateValues(Index face, Tessellation const &tessellation, CallStatus &status) {
+    bool evaluateValues(Index face, LevelTessellation const &tessellation, CallStatus &status) {
         for (std::size_t i = 0; i < _values.size(); ++i) {
             Values const &values = _values[i];
             FarExt::Interpolation const interpolation =
@@ -225,8 +225,8 @@ private:
     Sink const &_sink;
     VertexPoints *const _vertexPoints; // null: none are kept
     std::size_t _numPatches = 0;
-    std::optional<Tessellation> _tessellation; // of a tree
-    std::vector<int> _levels;                  // or what tells a tree
+    std::optional<LevelTessellation> _tessellation; // of a tree
+    std::vector<int> _levels;                       // or what tells a tree
     std::vector<int> _planLevels;
     std::shared_ptr<internal::PatchPlan const> _plan;
     std::unique_ptr<internal::FaceSections const> _sections; // of the last face that came in some
@@ -414,23 +414,23 @@ int PatchStream<REAL>::GetNumSections(Index face) const {
 }
 
 template <typename REAL>
-Tessellation PatchStream<REAL>::MakeTessellation(Index face, int section) const {
+LevelTessellation PatchStream<REAL>::MakeTessellation(Index face, int section) const {
     std::vector<int> levels;
     getLevels(face, levels);
     return isCut(face, levels)
-               ? Tessellation(*makeSections(face), section, _options.GetTessellationOptions())
+               ? LevelTessellation(*makeSections(face), section, _options.GetTessellationOptions())
                : MakeTessellation(face);
 }
 
 template <typename REAL>
-Tessellation PatchStream<REAL>::MakeTessellation(Index face) const {
+LevelTessellation PatchStream<REAL>::MakeTessellation(Index face) const {
     if (_forest) {
         return _forest->GetTessellation(face, _options.GetTessellationOptions());
     }
     std::vector<int> levels;
     getLevels(face, levels);
-    return Tessellation(_factory.GetFaceParameterization(face), int(levels.size()), levels.data(),
-                        _options.GetTessellationOptions());
+    return LevelTessellation(_factory.GetFaceParameterization(face), int(levels.size()),
+                             levels.data(), _options.GetTessellationOptions());
 }
 
 // Of several faces that are wrong, the first is told of, whoever finds it.
@@ -444,7 +444,7 @@ CallStatus PatchStream<REAL>::checkRange(Index beginFace, Index endFace, bool *a
                                              std::to_string(base.GetNumFaces()) + " of the mesh");
     }
     constexpr int kTriangle = 3;
-    if (!Tessellation(Parameterization(kTriangle), 0, _options.GetTessellationOptions())
+    if (!LevelTessellation(Parameterization(kTriangle), 0, _options.GetTessellationOptions())
              .IsValid()) {
         return FarExt::internal::Failure(
             StatusCode::InvalidArgument,
@@ -528,12 +528,14 @@ CallStatus PatchStream<REAL>::checkTree(Index face) const {
 // Whether those of a face and its edges are some that a tessellation has.
 template <typename REAL>
 CallStatus PatchStream<REAL>::checkLevels(Index face, std::vector<int> const &levels) const {
-    auto const isLevel = [](int level) { return 0 <= level && level <= Tessellation::kLastLevel; };
+    auto const isLevel = [](int level) {
+        return 0 <= level && level <= LevelTessellation::kLastLevel;
+    };
     auto const refuse = [](int level, ComponentType type, char const *name, Index index) {
         return CallStatus(StatusCode::InvalidArgument, type, index,
                           std::string(name) + " " + std::to_string(index) + " has level " +
                               std::to_string(level) + ", which is not one of 0 to " +
-                              std::to_string(Tessellation::kLastLevel));
+                              std::to_string(LevelTessellation::kLastLevel));
     };
     if (!isLevel(levels.back())) {
         return refuse(levels.back(), ComponentType::Face, "face", face);

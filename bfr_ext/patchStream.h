@@ -21,7 +21,7 @@ class StreamTypes;
 } // namespace internal
 
 /// \brief How fine the patches of a stream are: a level of refinement for the inside of each base face
-/// and one for each edge of the base mesh, 0 ... Tessellation::kLastLevel.
+/// and one for each edge of the base mesh, 0 ... LevelTessellation::kLastLevel.
 ///
 /// An edge is named by its number in SurfaceFactory::GetLevel(), whichever face asks: so neighbours fit.
 class PatchLevels {
@@ -57,7 +57,7 @@ private:
 /// of varying and face-varying data, where they are asked for.
 ///
 /// A face whose tessellation would take more memory than a fourth of that has a patch for each of its
-/// *sections* (Tessellation::GetSection()).  Neighbouring sections share the points on their boundaries, as
+/// *sections* (LevelTessellation::GetSection()).  Neighbouring sections share the points on their boundaries, as
 /// faces do, and the points are those that the face has as a whole, to the bit; so are the facets, but that
 /// of polygons, hexagons between two sections come in two halves.
 ///
@@ -81,10 +81,11 @@ public:
 
     /// \brief What a sink gets of one base face, or of a section of it; it is there during the call.
     struct Patch {
-        Index face;                       ///< the base face
-        Tessellation const &tessellation; ///< the places of the points, and the facets between them
-        REAL const *points;               ///< tessellation.GetNumCoords() points, without gaps
-        int pointSize;                    ///< numbers of a point
+        Index face; ///< the base face
+        LevelTessellation const
+            &tessellation;  ///< the places of the points, and the facets between them
+        REAL const *points; ///< tessellation.GetNumCoords() points, without gaps
+        int pointSize;      ///< numbers of a point
         /// As many derivatives by u as points, of the same size; null unless options ask for them.
         REAL const *du = nullptr;
         REAL const *dv = nullptr; ///< by v
@@ -117,12 +118,14 @@ public:
         Options() = default;
 
         /// Sets what facets are like; strides of coordinates are of no matter.
-        Options &SetTessellationOptions(Tessellation::Options const &options) {
+        Options &SetTessellationOptions(LevelTessellation::Options const &options) {
             _tessellationOptions = options;
             return *this;
         }
         /// That.
-        Tessellation::Options const &GetTessellationOptions() const { return _tessellationOptions; }
+        LevelTessellation::Options const &GetTessellationOptions() const {
+            return _tessellationOptions;
+        }
 
         /// Sets whether patches have the derivatives of their points: their cross products are normals.
         Options &SetDerivatives(bool hasDerivatives) {
@@ -166,7 +169,7 @@ public:
         std::size_t GetMaxTypes() const { return _maxTypes; }
 
     private:
-        Tessellation::Options _tessellationOptions;
+        LevelTessellation::Options _tessellationOptions;
         bool _hasDerivatives = false;
         std::size_t _maxTypes = 0;
         std::size_t _maxMemory = std::size_t(4) << 20;
@@ -198,7 +201,7 @@ public:
     /// \param sink           takes patches
     /// \param status         where Run() gives false without a failure, it is Ok: the sink ended it
     /// \return               whether all patches were handed out.  Failures are, before any patch is:
-    ///                       InvalidArgument for a level or options that Tessellation does not have,
+    ///                       InvalidArgument for a level or options that LevelTessellation does not have,
     ///                       or a forest of another refiner or that is not matched;
     ///                       Unsupported for a face without a surface (SurfaceFactory) that is no hole;
     ///                       and on the way, Unsupported for a vertex without a limit stencil
@@ -224,9 +227,9 @@ public:
     /// How many patches a face has, which is in range and has valid levels or trees: 1, or its sections.
     int GetNumSections(Index face) const;
     /// The tessellation of such a face as a whole, whatever memory that takes.
-    Tessellation MakeTessellation(Index face) const;
+    LevelTessellation MakeTessellation(Index face) const;
     /// That of a section, 0 ... GetNumSections(face) - 1: those that the patches of the face have.
-    Tessellation MakeTessellation(Index face, int section) const;
+    LevelTessellation MakeTessellation(Index face, int section) const;
 
     /// The factory that was given.
     SurfaceFactory const &GetFactory() const { return _factory; }

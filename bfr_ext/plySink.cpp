@@ -114,7 +114,7 @@ bool PlySink<REAL>::writePoints(typename PatchStream<REAL>::Patch const &patch,
 template <typename REAL>
 bool PlySink<REAL>::writeFacets(typename PatchStream<REAL>::Patch const &patch,
                                 std::vector<PatchNumbering::Run> const &runs) const {
-    Tessellation const &tessellation = patch.tessellation;
+    LevelTessellation const &tessellation = patch.tessellation;
     std::vector<std::int32_t> pointsOfPlaces;
     pointsOfPlaces.reserve(std::size_t(tessellation.GetNumCoords()));
     for (PatchNumbering::Run const &run : runs) {

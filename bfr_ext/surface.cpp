@@ -6,6 +6,7 @@
 #include "cell/facePatches.h"
 #include "cell/patchEvaluator.h"
 #include "cell/plainFace.h"
+#include "cell/rateEvaluator.h"
 #include "cell/refinedCells.h"
 
 #include <algorithm>
@@ -168,7 +169,7 @@ void Surface<REAL>::Evaluate(REAL const uv[2], REAL const patchPoints[],
 }
 
 template <typename REAL>
-void Surface<REAL>::Evaluate(Tessellation const &tessellation, REAL const controlPoints[],
+void Surface<REAL>::Evaluate(LevelTessellation const &tessellation, REAL const controlPoints[],
                              PointDescriptor const &pointDesc, REAL p[],
                              PointDescriptor const &resultDesc) const {
     REAL *const results[3] = {p, nullptr, nullptr};
@@ -176,7 +177,7 @@ void Surface<REAL>::Evaluate(Tessellation const &tessellation, REAL const contro
 }
 
 template <typename REAL>
-void Surface<REAL>::Evaluate(Tessellation const &tessellation, REAL const controlPoints[],
+void Surface<REAL>::Evaluate(LevelTessellation const &tessellation, REAL const controlPoints[],
                              PointDescriptor const &pointDesc, REAL p[], REAL du[], REAL dv[],
                              PointDescriptor const &resultDesc) const {
     REAL *const results[3] = {p, du, dv};
@@ -184,7 +185,7 @@ void Surface<REAL>::Evaluate(Tessellation const &tessellation, REAL const contro
 }
 
 template <typename REAL>
-void Surface<REAL>::Evaluate(Tessellation const &tessellation, REAL const controlPoints[],
+void Surface<REAL>::Evaluate(LevelTessellation const &tessellation, REAL const controlPoints[],
                              PointDescriptor const &pointDesc, REAL p[], REAL du[], REAL dv[],
                              REAL duu[], REAL duv[], REAL dvv[],
                              PointDescriptor const &resultDesc) const {
@@ -194,7 +195,7 @@ void Surface<REAL>::Evaluate(Tessellation const &tessellation, REAL const contro
     Evaluate(tessellation, controlPoints, pointDesc, p, du, dv, resultDesc);
     CellStencil stencil(*_type);
     std::ptrdiff_t result = 0;
-    for (Tessellation::SectorCoords const &place : tessellation._places) {
+    for (LevelTessellation::SectorCoords const &place : tessellation._places) {
         internal::BasePoint const point =
             internal::MakeBasePoint(GetFaceSize(), place.sector, {place.start, place.end});
         stencil.Find(point, false);
@@ -211,7 +212,30 @@ void Surface<REAL>::Evaluate(Tessellation const &tessellation, REAL const contro
 }
 
 template <typename REAL>
-bool Surface<REAL>::canEvaluate(Tessellation const &tessellation) const {
+void Surface<REAL>::Evaluate(OpenSubdiv::Bfr::Tessellation const &tessellation,
+                             REAL const controlPoints[], PointDescriptor const &pointDesc, REAL p[],
+                             PointDescriptor const &resultDesc) const {
+    Evaluate(tessellation, controlPoints, pointDesc, p, nullptr, nullptr, resultDesc);
+}
+
+template <typename REAL>
+void Surface<REAL>::Evaluate(OpenSubdiv::Bfr::Tessellation const &tessellation,
+                             REAL const controlPoints[], PointDescriptor const &pointDesc, REAL p[],
+                             REAL du[], REAL dv[], PointDescriptor const &resultDesc) const {
+    if (!IsValid() || !tessellation.IsValid() || tessellation.GetFaceSize() != GetFaceSize()) {
+        return;
+    }
+    REAL *const results[3] = {p, du, dv};
+    useBorder(controlPoints, pointDesc, [&](internal::BorderEvaluator<REAL> &border) {
+        internal::EvaluateRates(*_type, tessellation,
+                                {controlPoints, pointDesc.stride, std::size_t(pointDesc.size),
+                                 results, resultDesc.stride},
+                                border);
+    });
+}
+
+template <typename REAL>
+bool Surface<REAL>::canEvaluate(LevelTessellation const &tessellation) const {
     return IsValid() && tessellation.IsValid() && tessellation.GetFaceSize() == GetFaceSize();
 }
 
@@ -240,7 +264,7 @@ void Surface<REAL>::useBorder(REAL const controlPoints[], PointDescriptor const 
 }
 
 template <typename REAL>
-void Surface<REAL>::evaluate(Tessellation const &tessellation, REAL const controlPoints[],
+void Surface<REAL>::evaluate(LevelTessellation const &tessellation, REAL const controlPoints[],
                              PointDescriptor const &pointDesc, REAL *const results[3],
                              PointDescriptor const &resultDesc) const {
     if (!canEvaluate(tessellation)) {
@@ -276,7 +300,7 @@ void Surface<REAL>::evaluate(Tessellation const &tessellation, REAL const contro
 
 // The points inside of a face whose type is known, and all derivatives.  The levels say which pattern it is.
 template <typename REAL>
-void Surface<REAL>::evaluateInside(Tessellation const &tessellation,
+void Surface<REAL>::evaluateInside(LevelTessellation const &tessellation,
                                    internal::PatchEvaluator<REAL> &evaluator,
                                    REAL const controlPoints[], PointDescriptor const &pointDesc,
                                    REAL *const results[3],
@@ -290,9 +314,9 @@ void Surface<REAL>::evaluateInside(Tessellation const &tessellation,
                                 auto const &make) -> Pattern const & {
         return _type->GetPatterns().template Get<Pattern>(
             PatternTable::GetKind<REAL>(of), levels.data(), levels.data() + levels.size(), [&] {
-                Tessellation const &uniform = make();
+                LevelTessellation const &uniform = make();
                 std::vector<internal::BasePoint> places;
-                for (Tessellation::SectorCoords const &place : uniform._places) {
+                for (LevelTessellation::SectorCoords const &place : uniform._places) {
                     places.push_back(internal::MakeBasePoint(GetFaceSize(), place.sector,
                                                              {place.start, place.end}));
                 }
@@ -301,7 +325,7 @@ void Surface<REAL>::evaluateInside(Tessellation const &tessellation,
                            : Pattern(*_type, places);
             });
     };
-    auto const getOwn = [&]() -> Tessellation const & { return tessellation; };
+    auto const getOwn = [&]() -> LevelTessellation const & { return tessellation; };
     auto const sumUp = [&](internal::MirrorMatrix<REAL> const &matrix, REAL *result) {
         internal::SumUpPlaces(matrix, {controlPoints, pointDesc.stride, std::size_t(pointDesc.size),
                                        nullptr, result, resultDesc.stride});
@@ -315,9 +339,9 @@ void Surface<REAL>::evaluateInside(Tessellation const &tessellation,
         sumUp(getPattern(PatternOf::Face, levels, getOwn).matrices[0],
               results[0] + std::ptrdiff_t(numBorderPlaces) * resultDesc.stride);
     } else if (isPattern && tessellation.getLevelOfPlaces(false) <= kLastLevelOfSelection) {
-        Tessellation::Selection const &selection = tessellation.getSelection();
+        LevelTessellation::Selection const &selection = tessellation.getSelection();
         Pattern const &pattern = getPattern(PatternOf::Face, selection.levels, [&] {
-            return Tessellation(Parameterization(GetFaceSize()), selection.levels[0]);
+            return LevelTessellation(Parameterization(GetFaceSize()), selection.levels[0]);
         });
         static thread_local std::vector<REAL> uniform;
         auto const size = std::size_t(pointDesc.size);
@@ -350,7 +374,7 @@ void Surface<REAL>::evaluateInside(Tessellation const &tessellation,
 
 // The control points are refined along the tree, as far as cells have corners that are asked for.
 template <typename REAL>
-void Surface<REAL>::evaluateTree(Tessellation const &tessellation, REAL const controlPoints[],
+void Surface<REAL>::evaluateTree(LevelTessellation const &tessellation, REAL const controlPoints[],
                                  PointDescriptor const &pointDesc, REAL *const results[3],
                                  PointDescriptor const &resultDesc) const {
     auto const length = std::size_t(pointDesc.size);
@@ -367,11 +391,11 @@ void Surface<REAL>::evaluateTree(Tessellation const &tessellation, REAL const co
     };
     // What they have taken of memory is kept for the next face.
     static thread_local internal::RefinedCells cells;
-    using Corners = std::vector<Tessellation::CellCorner>;
+    using Corners = std::vector<LevelTessellation::CellCorner>;
     auto const forEachCornerOf = [](int treeCell, Corners const &ofAll, auto const &function) {
         auto corner = std::lower_bound(
             ofAll.begin(), ofAll.end(), treeCell,
-            [](Tessellation::CellCorner const &a, int number) { return a.cell < number; });
+            [](LevelTessellation::CellCorner const &a, int number) { return a.cell < number; });
         for (; corner != ofAll.end() && corner->cell == treeCell; ++corner) {
             function(*corner);
         }
@@ -417,7 +441,7 @@ void Surface<REAL>::evaluateTree(Tessellation const &tessellation, REAL const co
     // Derivatives where the tree has not the cell that they are from.
     for (std::size_t i = 0; results[1] && i < isDone.size(); ++i) {
         if (!isDone[i]) {
-            Tessellation::SectorCoords const &place = tessellation._places[i];
+            LevelTessellation::SectorCoords const &place = tessellation._places[i];
             CellStencil stencil(*_type);
             stencil.Find(
                 internal::MakeBasePoint(GetFaceSize(), place.sector, {place.start, place.end}),
@@ -437,7 +461,7 @@ void Surface<REAL>::evaluateTree(Tessellation const &tessellation, REAL const co
 
 // Makes the points on the border, but for those inside of edges that were made with those inside of the face.
 template <typename REAL>
-void Surface<REAL>::evaluateBorder(Tessellation const &tessellation,
+void Surface<REAL>::evaluateBorder(LevelTessellation const &tessellation,
                                    internal::BorderEvaluator<REAL> &evaluator,
                                    internal::PatchEvaluator<REAL> const *inside, REAL p[],
                                    PointDescriptor const &resultDesc) const {
@@ -456,24 +480,25 @@ void Surface<REAL>::evaluateBorder(Tessellation const &tessellation,
         int const level = tessellation.getEdgeLevel(edge);
         if (level < 0) {
             for (int place = first + 1; place <= first + numPlaces; ++place) {
-                Tessellation::SectorCoords const &coords = tessellation._places[std::size_t(place)];
+                LevelTessellation::SectorCoords const &coords =
+                    tessellation._places[std::size_t(place)];
                 evaluator.EvaluateKeptPoint(edge, {coords.start, coords.end}, getResult(place));
             }
         } else if (numPlaces > 0) {
-            evaluator.EvaluateEdge(edge, level, numPlaces, getResult(first + 1), resultDesc.stride);
+            evaluator.EvaluateEdge(edge, level, getResult(first + 1), resultDesc.stride);
         }
     }
 }
 
 // Those on the border of the face, to the bit as all points of the face are evaluated.
 template <typename REAL>
-void Surface<REAL>::evaluateSectionBorder(Tessellation const &tessellation,
+void Surface<REAL>::evaluateSectionBorder(LevelTessellation const &tessellation,
                                           internal::BorderEvaluator<REAL> &evaluator, REAL p[],
                                           PointDescriptor const &resultDesc) const {
     std::size_t const size = evaluator.GetSize();
     int evaluatedEdge = -1;
     std::vector<REAL> edgePoints;
-    for (Tessellation::BorderRun const &run : tessellation._section->border) {
+    for (LevelTessellation::BorderRun const &run : tessellation._section->border) {
         auto const edge = std::size_t(run.edge);
         for (int i = 0; i < run.count; ++i) {
             int const place = run.place + i;
@@ -483,7 +508,8 @@ void Surface<REAL>::evaluateSectionBorder(Tessellation const &tessellation,
                 continue;
             }
             if (tessellation._tree) {
-                Tessellation::SectorCoords const &coords = tessellation._places[std::size_t(place)];
+                LevelTessellation::SectorCoords const &coords =
+                    tessellation._places[std::size_t(place)];
                 evaluator.EvaluateKeptPoint(edge, {coords.start, coords.end}, result);
                 continue;
             }
@@ -491,8 +517,7 @@ void Surface<REAL>::evaluateSectionBorder(Tessellation const &tessellation,
                 int const level = tessellation._levels[edge];
                 int const numPoints = Polyline(level).GetNumPoints();
                 edgePoints.resize(std::size_t(numPoints) * size);
-                evaluator.EvaluateEdge(edge, level, numPoints, edgePoints.data(),
-                                       std::ptrdiff_t(size));
+                evaluator.EvaluateEdge(edge, level, edgePoints.data(), std::ptrdiff_t(size));
                 evaluatedEdge = run.edge;
             }
             std::copy_n(&edgePoints[std::size_t(run.index + i) * size], size, result);
@@ -503,7 +528,7 @@ void Surface<REAL>::evaluateSectionBorder(Tessellation const &tessellation,
 // Evaluates all vertices together, and all edges of a level; false where they are not of one type, or an
 // edge has no level.
 template <typename REAL>
-bool Surface<REAL>::evaluateLatticeBorder(Tessellation const &tessellation,
+bool Surface<REAL>::evaluateLatticeBorder(LevelTessellation const &tessellation,
                                           REAL const controlPoints[],
                                           PointDescriptor const &pointDesc, REAL p[],
                                           PointDescriptor const &resultDesc) const {

@@ -2,8 +2,9 @@
 #ifndef OPENSUBDIVHEX_BFR_EXT_SURFACE_H
 #define OPENSUBDIVHEX_BFR_EXT_SURFACE_H
 
-#include "tessellation.h"
+#include "levelTessellation.h"
 
+#include <opensubdiv/bfr/tessellation.h>
 #include <opensubdiv/far/types.h>
 
 #include <algorithm>
@@ -217,18 +218,44 @@ public:
     /// The weights are found when a type of faces or of cells is first evaluated so, and kept in the
     /// cache.  Inside of trees of more than 128 cells the control points are refined cell by cell instead,
     /// in double precision.
-    void Evaluate(Tessellation const &tessellation, REAL const controlPoints[],
+    void Evaluate(LevelTessellation const &tessellation, REAL const controlPoints[],
                   PointDescriptor const &pointDesc, REAL p[],
                   PointDescriptor const &resultDesc) const;
     /// The same with first derivatives.
-    void Evaluate(Tessellation const &tessellation, REAL const controlPoints[],
+    void Evaluate(LevelTessellation const &tessellation, REAL const controlPoints[],
                   PointDescriptor const &pointDesc, REAL p[], REAL du[], REAL dv[],
                   PointDescriptor const &resultDesc) const;
     /// The same with first and second derivatives, of which the second ones are found place by place: that
     /// takes some ten microseconds each.
-    void Evaluate(Tessellation const &tessellation, REAL const controlPoints[],
+    void Evaluate(LevelTessellation const &tessellation, REAL const controlPoints[],
                   PointDescriptor const &pointDesc, REAL p[], REAL du[], REAL dv[], REAL duu[],
                   REAL duv[], REAL dvv[], PointDescriptor const &resultDesc) const;
+
+    /// \brief Writes the points at all places of a tessellation of Bfr, with rates: any number of segments on each
+    /// edge, evenly spaced.
+    ///
+    /// Rates, options, coordinates and facets are Bfr's.  Derivatives are by the u and v that its coordinates are:
+    /// Parameterization::ConvertFromBfr() says where these lie.
+    ///
+    /// \param tessellation  made for a face of this size, as of GetParameterization().GetBfr(); a triangle may have
+    ///                      the sub-faces of Catmull-Clark, too.  Nothing is written where it is of another size,
+    ///                      or invalid.
+    ///
+    /// Two faces that share an edge get the same points there, to the bit, if the edge has the same rate in both,
+    /// with the exceptions said above.  A place of an edge has the same point at whatever rates, levels and
+    /// polylines have it: 1/3 and 2/6, 1/4 and the first one of level 2.
+    ///
+    /// The weights of a type of faces are found when it is first evaluated with some inner rates, which takes some
+    /// ten microseconds a place, and kept in the cache: for each place inside a number for each control point,
+    /// and two more where derivatives are asked for.  Those of more than 4,096 places inside, and of rates above
+    /// 1,024 on an edge, are found each time.
+    void Evaluate(OpenSubdiv::Bfr::Tessellation const &tessellation, REAL const controlPoints[],
+                  PointDescriptor const &pointDesc, REAL p[],
+                  PointDescriptor const &resultDesc) const;
+    /// The same with first derivatives.
+    void Evaluate(OpenSubdiv::Bfr::Tessellation const &tessellation, REAL const controlPoints[],
+                  PointDescriptor const &pointDesc, REAL p[], REAL du[], REAL dv[],
+                  PointDescriptor const &resultDesc) const;
 
     /// Writes the weights of the control points that make the point at \p uv.
     /// \return  GetNumControlPoints()
@@ -265,30 +292,31 @@ private:
     }
     // Has what evaluates it brought to the cache, while control points are gathered.
     void prefetch() const;
-    bool canEvaluate(Tessellation const &tessellation) const;
+    bool canEvaluate(LevelTessellation const &tessellation) const;
     internal::BasePoint findPoint(REAL const uv[2]) const;
     void evaluate(REAL const uv[2], int numDerivatives, REAL const patchPoints[],
                   PointDescriptor const &pointDesc, REAL *const results[6]) const;
-    void evaluate(Tessellation const &tessellation, REAL const controlPoints[],
+    void evaluate(LevelTessellation const &tessellation, REAL const controlPoints[],
                   PointDescriptor const &pointDesc, REAL *const results[3],
                   PointDescriptor const &resultDesc) const;
-    void evaluateInside(Tessellation const &tessellation, internal::PatchEvaluator<REAL> &evaluator,
-                        REAL const controlPoints[], PointDescriptor const &pointDesc,
-                        REAL *const results[3], PointDescriptor const &resultDesc) const;
-    void evaluateTree(Tessellation const &tessellation, REAL const controlPoints[],
+    void evaluateInside(LevelTessellation const &tessellation,
+                        internal::PatchEvaluator<REAL> &evaluator, REAL const controlPoints[],
+                        PointDescriptor const &pointDesc, REAL *const results[3],
+                        PointDescriptor const &resultDesc) const;
+    void evaluateTree(LevelTessellation const &tessellation, REAL const controlPoints[],
                       PointDescriptor const &pointDesc, REAL *const results[3],
                       PointDescriptor const &resultDesc) const;
     template <typename FUNCTION>
     void useBorder(REAL const controlPoints[], PointDescriptor const &pointDesc,
                    FUNCTION const &function) const;
-    void evaluateBorder(Tessellation const &tessellation,
+    void evaluateBorder(LevelTessellation const &tessellation,
                         internal::BorderEvaluator<REAL> &evaluator,
                         internal::PatchEvaluator<REAL> const *inside, REAL p[],
                         PointDescriptor const &resultDesc) const;
-    bool evaluateLatticeBorder(Tessellation const &tessellation, REAL const controlPoints[],
+    bool evaluateLatticeBorder(LevelTessellation const &tessellation, REAL const controlPoints[],
                                PointDescriptor const &pointDesc, REAL p[],
                                PointDescriptor const &resultDesc) const;
-    void evaluateSectionBorder(Tessellation const &tessellation,
+    void evaluateSectionBorder(LevelTessellation const &tessellation,
                                internal::BorderEvaluator<REAL> &evaluator, REAL p[],
                                PointDescriptor const &resultDesc) const;
 

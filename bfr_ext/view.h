@@ -51,7 +51,7 @@ enum class CellVisibility : unsigned char {
 /// Sharp edges and boundaries, whose curve may bend in the plane of a cell, get points of their own
 /// (MakeEdge()).
 ///
-/// Facets are what Tessellation makes of triangles or quads: hexagons are within the same distance when they are
+/// Facets are what LevelTessellation makes of triangles or quads: hexagons are within the same distance when they are
 /// cut along the diagonal of their half cells, from corner 0 to 3, as a fan from corner 0 does.  Where a surface
 /// that is not at a boundary or sharp edge turns back in its own plane, as all around a leaf without thickness, no
 /// height tells how far its outline is from the sides of cells: SetEdgeLength() refines there.
@@ -178,7 +178,7 @@ public:
                       typename Surface<REAL>::PointDescriptor const &pointDesc,
                       Polyline const *previous = nullptr) const;
 
-    /// \brief Writes one level for each edge and one for the inside of a face, as Tessellation takes:
+    /// \brief Writes one level for each edge and one for the inside of a face, as LevelTessellation takes:
     /// the highest that MakeTree() has there.
     ///
     /// Faces that share an edge have to take the larger level of both.

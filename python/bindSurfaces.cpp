@@ -3,8 +3,8 @@
 #include "errors.h"
 #include "refiner.h"
 
+#include "bfr_ext/levelTessellation.h"
 #include "bfr_ext/surfaceFactory.h"
-#include "bfr_ext/tessellation.h"
 
 #include <cmath>
 #include <utility>
@@ -13,7 +13,7 @@ namespace OpenSubdivHex::Python {
 
 namespace {
 
-using BfrExt::Tessellation;
+using BfrExt::LevelTessellation;
 using Points = py::array_t<double>;
 using PointDescriptor = BfrExt::Surface<double>::PointDescriptor;
 
@@ -23,7 +23,7 @@ public:
     FaceTessellation(int faceSize, py::object const &levels, int facetSize)
         : _tessellation(make(faceSize, levels, facetSize)) {}
 
-    Tessellation const &Get() const { return _tessellation; }
+    LevelTessellation const &Get() const { return _tessellation; }
 
     std::vector<int> GetLevels() const {
         std::vector<int> levels(std::size_t(_tessellation.GetFaceSize()) + 1);
@@ -51,7 +51,7 @@ public:
     }
 
 private:
-    static Tessellation make(int faceSize, py::object const &levels, int facetSize) {
+    static LevelTessellation make(int faceSize, py::object const &levels, int facetSize) {
         if (faceSize < 3) {
             throw py::value_error("face_size: " + std::to_string(faceSize) + " is less than 3");
         }
@@ -68,20 +68,20 @@ private:
                                   std::to_string(faceSize) + " or " + std::to_string(faceSize + 1));
         }
         for (int const level : numbers) {
-            if (level < 0 || level > Tessellation::kLastLevel) {
+            if (level < 0 || level > LevelTessellation::kLastLevel) {
                 throw py::value_error("levels: " + std::to_string(level) + " is not one of 0 ... " +
-                                      std::to_string(Tessellation::kLastLevel));
+                                      std::to_string(LevelTessellation::kLastLevel));
             }
         }
         if (facetSize != 0 && facetSize != 3 && facetSize != 4) {
             throw py::value_error("facet_size: " + std::to_string(facetSize) + " is not 3, 4 or 0");
         }
         py::gil_scoped_release const release;
-        return Tessellation(BfrExt::Parameterization(faceSize), count, numbers.data(),
-                            Tessellation::Options().SetFacetSize(facetSize));
+        return LevelTessellation(BfrExt::Parameterization(faceSize), count, numbers.data(),
+                                 LevelTessellation::Options().SetFacetSize(facetSize));
     }
 
-    Tessellation _tessellation;
+    LevelTessellation _tessellation;
 };
 
 /// A surface, and how many points its mesh has.
@@ -175,7 +175,7 @@ private:
         std::vector<double> patchPoints = gather(points, &length);
         bool const isPattern = py::isinstance<FaceTessellation>(uv);
         std::vector<double> const places = isPattern ? std::vector<double>() : takePlaces(uv);
-        Tessellation const *const pattern =
+        LevelTessellation const *const pattern =
             isPattern ? &uv.cast<FaceTessellation const &>().Get() : nullptr;
         if (pattern && pattern->GetFaceSize() != _surface.GetFaceSize()) {
             throw py::value_error(
@@ -291,8 +291,8 @@ private:
 
 void BindSurfaces(py::module_ &module) {
     py::class_<FaceTessellation>(
-        module, "Tessellation",
-        "Tessellation(face_size, levels, facet_size=3)\n\n"
+        module, "LevelTessellation",
+        "LevelTessellation(face_size, levels, facet_size=3)\n\n"
         "A base face cut into facets, whose neighbours fit if both take the same level for the\n"
         "edge that they share.\n\n"
         "levels is one of 0 ... 12 for all; or one for each edge, edge i from vertex i to the "
@@ -323,7 +323,7 @@ void BindSurfaces(py::module_ &module) {
                             "function of u and v.\n\nPoints are those of the mesh, numbers of "
                             "the shape (points,) or (points, length): float32\nand float64 are "
                             "read in place.  Results are float64.  uv is of the shape (places, "
-                            "2), or a\nTessellation.")
+                            "2), or a\nLevelTessellation.")
         .def_property_readonly("face_size", &FaceSurface::GetFaceSize, "Vertices of the face.")
         .def_property_readonly("control_points", &FaceSurface::GetControlPoints,
                                "int32: the points of the mesh that it depends on, those of the "
@@ -342,7 +342,7 @@ void BindSurfaces(py::module_ &module) {
              py::arg("uv"), py::arg("points"))
         .def("evaluate_stencil", &FaceSurface::EvaluateStencil,
              "evaluate_stencil(uv)\n\nWeights of the control points for places that are no "
-             "Tessellation, of the shape\n(places, control points).",
+             "LevelTessellation, of the shape\n(places, control points).",
              py::arg("uv"))
         .def("bound", &FaceSurface::Bound,
              "bound(points)\n\nReturns (low, high), the box of the control points, in which the "

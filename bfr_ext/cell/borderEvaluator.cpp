@@ -147,13 +147,40 @@ void BorderEvaluator<REAL>::setEdge(std::size_t edge) {
 }
 
 template <typename REAL>
-void BorderEvaluator<REAL>::EvaluateEdge(std::size_t edge, int level, int numPoints, REAL *results,
+void BorderEvaluator<REAL>::EvaluateEdge(std::size_t edge, int level, REAL *results,
                                          std::ptrdiff_t stride) {
     setEdge(edge);
-    sumUp(getMatrix(*_edge.type, _edge.cell, PatternOf::Border, level,
-                    [&] { return makeEdgePoints(level); }),
-          _isReversed ? results + std::ptrdiff_t(numPoints - 1) * stride : results,
-          _isReversed ? -stride : stride);
+    sumUpInside(getMatrix(*_edge.type, _edge.cell, PatternOf::Border, level,
+                          [&] { return makeEdgePoints(level); }),
+                results, stride);
+}
+
+// Places are i/rate of the edge in its own direction, not 1 - i/rate, which would be rounded.
+template <typename REAL>
+void BorderEvaluator<REAL>::EvaluateRate(std::size_t edge, int rate, REAL *results,
+                                         std::ptrdiff_t stride) {
+    setEdge(edge);
+    auto const makePoints = [&] {
+        std::vector<double> points;
+        for (int i = 1; i < rate; ++i) {
+            points.push_back(double(i) / rate);
+        }
+        return points;
+    };
+    if (rate <= kMaxKeptRate) {
+        sumUpInside(getMatrix(*_edge.type, _edge.cell, PatternOf::BorderRate, rate, makePoints),
+                    results, stride);
+    } else {
+        sumUpInside(makeMatrix(*_edge.type, _edge.cell, makePoints()), results, stride);
+    }
+}
+
+// Those of all places inside of the edge, in the direction of the face.
+template <typename REAL>
+void BorderEvaluator<REAL>::sumUpInside(PlaceMatrix<REAL> const &matrix, REAL *results,
+                                        std::ptrdiff_t stride) const {
+    auto const last = std::ptrdiff_t(matrix.GetNumPlaces()) - 1;
+    sumUp(matrix, _isReversed ? results + last * stride : results, _isReversed ? -stride : stride);
 }
 
 // They are kept one by one, since polylines have few in common, and without what a matrix of one place is

@@ -32,8 +32,9 @@ public:
     void EvaluateVertex(std::size_t vert, REAL *result);
 
     /// Writes the points inside of an edge that has a level, in the direction of the face.
-    void EvaluateEdge(std::size_t edge, int level, int numPoints, REAL *results,
-                      std::ptrdiff_t stride);
+    void EvaluateEdge(std::size_t edge, int level, REAL *results, std::ptrdiff_t stride);
+    /// Writes the points at 1/rate, 2/rate ... inside of an edge, in the direction of the face.
+    void EvaluateRate(std::size_t edge, int rate, REAL *results, std::ptrdiff_t stride);
     /// \brief Writes a point of a polyline, the stencil of which is kept as long as the type if the place is one of
     /// level kLastKeptLevel: deeper ones are many, and seldom come twice.
     ///
@@ -41,6 +42,7 @@ public:
     void EvaluateKeptPoint(std::size_t edge, Pair const &place, REAL *result);
 
     static constexpr int kLastKeptLevel = 8;
+    static constexpr int kMaxKeptRate = 1024;
 
     /// Numbers of a point.
     std::size_t GetSize() const { return _size; }
@@ -79,6 +81,7 @@ private:
         return _plain ? _plain->GetLatticeItem(_turns, item) : _type->GetBorderItem(_turns, item);
     }
     void setEdge(std::size_t edge);
+    void sumUpInside(PlaceMatrix<REAL> const &matrix, REAL *results, std::ptrdiff_t stride) const;
     void sumUp(PlaceMatrix<REAL> const &matrix, REAL *results, std::ptrdiff_t resultStride) const {
         SumUpPlaces(matrix,
                     {_edge.points, _edge.stride, _size, _edge.indices, results, resultStride});

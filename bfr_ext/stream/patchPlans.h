@@ -4,7 +4,7 @@
 
 #include "bfr_ext/cell/cellPlan.h"
 #include "bfr_ext/cell/faceSections.h"
-#include "bfr_ext/tessellation.h"
+#include "bfr_ext/levelTessellation.h"
 
 #include <atomic>
 #include <list>
@@ -18,7 +18,7 @@ namespace OpenSubdivHex::BfrExt::internal {
 
 /// What plans are made for.
 struct PlanOptions {
-    Tessellation::Options tessellation;
+    LevelTessellation::Options tessellation;
     bool hasDerivatives;
 
     friend bool operator==(PlanOptions const &a, PlanOptions const &b) {
@@ -40,7 +40,7 @@ struct PatchPlan {
         : tessellation(sections, section, options.tessellation),
           hasDerivatives(options.hasDerivatives) {}
 
-    PatchPlan(Tessellation ofFace, PlanOptions const &options)
+    PatchPlan(LevelTessellation ofFace, PlanOptions const &options)
         : tessellation(std::move(ofFace)), hasDerivatives(options.hasDerivatives) {}
 
     /// Memory, in bytes.
@@ -71,7 +71,7 @@ struct PatchPlan {
         return kBytesOfCoord + 8 * sizeof(int) + 2 * sizeof(int) + (hasDerivatives ? 300 : 160);
     }
 
-    Tessellation const tessellation;
+    LevelTessellation const tessellation;
     bool const hasDerivatives;
 
 private:

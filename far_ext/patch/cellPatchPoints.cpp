@@ -99,7 +99,7 @@ CallStatus FindCellPatchPoints(CellPatch const &cell, Sdc::Options sdcOptions,
     int const half = isHalf && HasHalves(mesh.levels[0].GetFaceSize(0)) ? cell.GetHalf() : 0;
     PatchCells const cells = isHalf ? PatchCells(mesh, 0, PatchCell{0, half})
                                     : PatchCells(mesh, 0, std::vector<Index>{0});
-    PatchBuilder builder(hierarchy, sdcOptions, schemeOptions, cells);
+    PatchBuilder builder(hierarchy, -1, sdcOptions, schemeOptions, cells);
     PatchAges ofVertices = {ages.steps,
                             std::vector<int>(std::size_t(mesh.levels[0].numVertices), 0)};
     for (std::size_t i = 0; i < cell.corners.size(); ++i) {

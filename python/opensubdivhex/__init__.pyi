@@ -281,16 +281,16 @@ class Surface:
     @property
     def face_size(self) -> int: ...
     def bound(self, points: ArrayLike) -> tuple[NDArray[np.float64], NDArray[np.float64]]: ...
-    def evaluate(self, uv: ArrayLike | Tessellation, points: ArrayLike) -> NDArray[np.float64]: ...
+    def evaluate(self, uv: ArrayLike | LevelTessellation, points: ArrayLike) -> NDArray[np.float64]: ...
     def evaluate_stencil(self, uv: ArrayLike) -> NDArray[np.float64]: ...
     def evaluate_with_derivatives(
         self,
-        uv: ArrayLike | Tessellation,
+        uv: ArrayLike | LevelTessellation,
         points: ArrayLike,
     ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]: ...
     def evaluate_with_second_derivatives(
         self,
-        uv: ArrayLike | Tessellation,
+        uv: ArrayLike | LevelTessellation,
         points: ArrayLike,
     ) -> tuple[
         NDArray[np.float64],
@@ -308,7 +308,7 @@ class SurfaceFactory:
     def varying_surface(self, face: int) -> Surface: ...
     def vertex_surface(self, face: int) -> Surface: ...
 
-class Tessellation:
+class LevelTessellation:
     def __init__(
         self,
         face_size: int,

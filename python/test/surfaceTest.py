@@ -54,7 +54,7 @@ def test_surfaces_behind_a_first_step_are_those_of_level_1(first_step):
     for face in (0, level.num_faces - 1):
         surface = factory.vertex_surface(face)
         corners = vertices[level.face_offsets[face]:level.face_offsets[face + 1]]
-        tessellation = osh.Tessellation(surface.face_size, 0)
+        tessellation = osh.LevelTessellation(surface.face_size, 0)
         np.testing.assert_allclose(surface.evaluate(tessellation, points), limit[corners],
                                    atol=3e-6)
         with pytest.raises(ValueError):
@@ -139,7 +139,7 @@ def test_second_derivatives_are_differences_of_first_ones(factory):
         for kind in (0, 1):
             difference = (ends[1][1 + kind] - ends[0][1 + kind]) / (2 * step)
             np.testing.assert_allclose(results[3 + kind + axis], difference, atol=0.03)
-    tessellation = osh.Tessellation(surface.face_size, 1)
+    tessellation = osh.LevelTessellation(surface.face_size, 1)
     of_tessellation = surface.evaluate_with_second_derivatives(tessellation, POSITIONS)
     of_places = surface.evaluate_with_second_derivatives(tessellation.coords, POSITIONS)
     for found, expected in zip(of_tessellation, of_places):
@@ -162,7 +162,7 @@ def test_neighbours_share_points_to_the_bit(factory):
     level = 3
     edges = {}
     for face, vertices in enumerate(FACES):
-        tessellation = osh.Tessellation(4, [level] * 4 + [face % 4])
+        tessellation = osh.LevelTessellation(4, [level] * 4 + [face % 4])
         assert tessellation.levels == [level] * 4 + [face % 4]
         points = factory.vertex_surface(face).evaluate(tessellation, POSITIONS)
         coords = tessellation.coords
@@ -187,12 +187,12 @@ def test_faces_of_any_size_and_kinds_of_facets():
     factory = osh.SurfaceFactory(osh.TopologyRefiner(PYRAMID_FACES))
     surface = factory.vertex_surface(1)
     assert surface.face_size == 3
-    polygons = osh.Tessellation(3, 2, facet_size=0)
+    polygons = osh.LevelTessellation(3, 2, facet_size=0)
     assert polygons.facet_sizes.sum() == len(polygons.facets)
     assert surface.evaluate(polygons, PYRAMID_POSITIONS).shape == (len(polygons.coords), 3)
-    assert osh.Tessellation(4, 1, facet_size=4).facets.shape[1] == 4
+    assert osh.LevelTessellation(4, 1, facet_size=4).facets.shape[1] == 4
     with pytest.raises(ValueError, match="a tessellation of 4 edges, but the face has 3"):
-        surface.evaluate(osh.Tessellation(4, 1), PYRAMID_POSITIONS)
+        surface.evaluate(osh.LevelTessellation(4, 1), PYRAMID_POSITIONS)
 
 
 def test_values_of_channels():
@@ -240,7 +240,7 @@ def test_errors_name_the_argument(factory):
     for arguments, name in (((2, 1), "face_size"), ((4, 13), "levels"), ((4, [1, 2]), "levels"),
                             ((4, 1, 5), "facet_size")):
         with pytest.raises(ValueError, match=name):
-            osh.Tessellation(*arguments)
+            osh.LevelTessellation(*arguments)
     holes = osh.SurfaceFactory(make_refiner(holes=[4]))
     assert holes.has_limit_surface(3) and not holes.has_limit_surface(4)
     with pytest.raises(osh.StatusError):

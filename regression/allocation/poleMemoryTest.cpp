@@ -4,8 +4,8 @@
 #include "failingAllocations.h"
 
 #include "bfr_ext/cellTree.h"
+#include "bfr_ext/levelTessellation.h"
 #include "bfr_ext/surfaceFactory.h"
-#include "bfr_ext/tessellation.h"
 #include "far_ext/limitStencilTableFactory.h"
 #include "far_ext/topologyRefinerFactory.h"
 #include "regression/shapes/shapeDescriptor.h"
@@ -18,9 +18,9 @@
 
 namespace OpenSubdivHex::Regression::poleMemoryTest {
 
+using BfrExt::LevelTessellation;
 using BfrExt::Polyline;
 using BfrExt::SurfaceFactory;
-using BfrExt::Tessellation;
 using FarExt::TopologyRefiner;
 
 namespace {
@@ -34,7 +34,7 @@ std::unique_ptr<TopologyRefiner> createRefiner(Shape const &shape) {
 
 /// Evaluates a tessellation of some surfaces of a factory, one after the other.
 void evaluateFaces(SurfaceFactory const &factory, Shape const &shape, int numFaces,
-                   Tessellation const &tessellation) {
+                   LevelTessellation const &tessellation) {
     std::vector<double> points;
     std::vector<double> results(3 * std::size_t(tessellation.GetNumCoords()));
     BfrExt::Surface<double> surface;
@@ -50,7 +50,7 @@ void evaluateFaces(SurfaceFactory const &factory, Shape const &shape, int numFac
 long measureSurfaces(int n) {
     Shape const shape = MakePole(n, 2);
     auto const refiner = createRefiner(shape);
-    Tessellation const tessellation(BfrExt::Parameterization(4), 2);
+    LevelTessellation const tessellation(BfrExt::Parameterization(4), 2);
     ResetPeakBytes();
     long const before = CountLiveBytes();
     evaluateFaces(*SurfaceFactory::Create(*refiner), shape, n, tessellation);
@@ -115,7 +115,7 @@ TEST(PoleMemoryTest, OfPolylinesIsThatOfTheirFirstLevels) {
         Polyline polyline;
         ASSERT_TRUE(Polyline::FromPlaces(places, &polyline));
         std::vector<Polyline> const edges(5, polyline);
-        Tessellation const tessellation(tree, edges.data());
+        LevelTessellation const tessellation(tree, edges.data());
         ASSERT_TRUE(tessellation.IsValid());
         evaluateFaces(*factory, shape, 1, tessellation);
     };

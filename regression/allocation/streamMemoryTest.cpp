@@ -14,10 +14,10 @@
 
 namespace OpenSubdivHex::Regression::streamMemoryTest {
 
+using BfrExt::LevelTessellation;
 using BfrExt::PatchLevels;
 using BfrExt::PatchStream;
 using BfrExt::SurfaceFactory;
-using BfrExt::Tessellation;
 
 namespace {
 
@@ -92,7 +92,8 @@ TEST(StreamMemoryTest, IsWhatWasAskedFor) {
         for (int const facetSize : {0, 3, 4}) {
             for (bool const hasDerivatives : {false, true}) {
                 PatchStream<float>::Options options;
-                options.SetTessellationOptions(Tessellation::Options().SetFacetSize(facetSize));
+                options.SetTessellationOptions(
+                    LevelTessellation::Options().SetFacetSize(facetSize));
                 options.SetDerivatives(hasDerivatives);
                 options.SetMaxMemory(testCase.kilobytes << 10);
                 for (int const numThreads : {1, 2}) {

@@ -27,18 +27,18 @@ namespace OpenSubdivHex::Regression::cellTreeTest {
 
 using BfrExt::CellForest;
 using BfrExt::CellTree;
+using BfrExt::LevelTessellation;
 using BfrExt::Polyline;
 using BfrExt::Surface;
-using BfrExt::Tessellation;
 
 namespace {
 
-Tessellation::Options getPolygonOptions(int facetSize) {
-    return Tessellation::Options().SetFacetSize(facetSize);
+LevelTessellation::Options getPolygonOptions(int facetSize) {
+    return LevelTessellation::Options().SetFacetSize(facetSize);
 }
 
 /// Where facets lie, whatever the order of places and facets.
-std::multiset<std::set<std::pair<double, double>>> getFacetPlaces(Tessellation const &t) {
+std::multiset<std::set<std::pair<double, double>>> getFacetPlaces(LevelTessellation const &t) {
     std::vector<double> coords(2 * std::size_t(t.GetNumCoords()));
     t.GetCoords(coords.data());
     std::multiset<std::set<std::pair<double, double>>> facets;
@@ -58,7 +58,7 @@ struct ForestMesh {
         int numPoints = int(forest.GetNumBoundaryPoints());
         for (int face = 0; face < forest.GetNumFaces(); ++face) {
             tessellations.push_back(forest.GetTessellation(face, getPolygonOptions(facetSize)));
-            Tessellation const &tessellation = tessellations.back();
+            LevelTessellation const &tessellation = tessellations.back();
             EXPECT_TRUE(tessellation.IsValid());
             std::vector<int> numbers(std::size_t(tessellation.GetNumCoords()));
             EXPECT_EQ(forest.GetBoundaryPoints(face, numbers.data()),
@@ -98,7 +98,7 @@ struct ForestMesh {
         return int(used.size()) - numEdges + numFacets;
     }
 
-    std::vector<Tessellation> tessellations;
+    std::vector<LevelTessellation> tessellations;
     std::vector<std::vector<int>> points; ///< by face and place
     std::map<std::pair<int, int>, int> sides;
     std::set<int> used;
@@ -235,14 +235,14 @@ TEST(CellTree, KnowsTheLevelsThatItHas) {
 TEST(CellTree, TessellationsNeedAllPointsOfTheTree) {
     CellTree const tree(4, 3);
     std::vector<Polyline> edges(4, Polyline(3));
-    EXPECT_TRUE(Tessellation(tree, edges.data()).IsValid());
-    EXPECT_TRUE(Tessellation(tree).IsValid());
+    EXPECT_TRUE(LevelTessellation(tree, edges.data()).IsValid());
+    EXPECT_TRUE(LevelTessellation(tree).IsValid());
     edges[2] = Polyline(2);
-    EXPECT_FALSE(Tessellation(tree, edges.data()).IsValid());
-    EXPECT_FALSE(Tessellation(tree, nullptr, getPolygonOptions(5)).IsValid());
-    EXPECT_EQ(Tessellation(tree, edges.data()).GetNumFacets(), 0);
+    EXPECT_FALSE(LevelTessellation(tree, edges.data()).IsValid());
+    EXPECT_FALSE(LevelTessellation(tree, nullptr, getPolygonOptions(5)).IsValid());
+    EXPECT_EQ(LevelTessellation(tree, edges.data()).GetNumFacets(), 0);
     edges[2] = Polyline(4);
-    Tessellation const finer(tree, edges.data());
+    LevelTessellation const finer(tree, edges.data());
     EXPECT_EQ(finer.GetNumEdgeCoords(2), 10);
     EXPECT_EQ(finer.GetLevels(nullptr), 0);
     EXPECT_FALSE(finer.IsUniform());
@@ -312,7 +312,7 @@ void expectReference(Shape const &shape, unsigned seed) {
     }
     ForestMesh const mesh(forest, std::vector<bool>(shape.faceSizes.size(), true), 0);
     for (int face = 0; face < forest.GetNumFaces(); ++face) {
-        Tessellation const &tessellation = mesh.tessellations[std::size_t(face)];
+        LevelTessellation const &tessellation = mesh.tessellations[std::size_t(face)];
         std::vector<double> coords(2 * std::size_t(tessellation.GetNumCoords()));
         tessellation.GetCoords(coords.data());
         std::multiset<PlacePolygon> polygons;
@@ -359,9 +359,9 @@ TEST(CellForest, TreesOfLevelsHaveTheirTessellation) {
     forest.MatchEdges();
     int numOfLevels = 0;
     for (int face = 0; face < 6; ++face) {
-        Tessellation const found = forest.GetTessellation(face, getPolygonOptions(0));
-        Tessellation const ofTree(forest.GetTree(face), forest.GetFacePolylines(face).data(),
-                                  getPolygonOptions(0));
+        LevelTessellation const found = forest.GetTessellation(face, getPolygonOptions(0));
+        LevelTessellation const ofTree(forest.GetTree(face), forest.GetFacePolylines(face).data(),
+                                       getPolygonOptions(0));
         EXPECT_EQ(getFacetPlaces(found), getFacetPlaces(ofTree)) << "face " << face;
         std::vector<int> levels(5);
         if (found.GetLevels(levels.data()) == 0) {
@@ -412,7 +412,7 @@ struct ForestCounts {
 };
 
 /// In the parameter plane facets are counter-clockwise and cover the face.
-void expectPlaneTiling(Tessellation const &tessellation) {
+void expectPlaneTiling(LevelTessellation const &tessellation) {
     std::vector<double> coords(2 * std::size_t(tessellation.GetNumCoords()));
     tessellation.GetCoords(coords.data());
     auto const getArea = [&](std::vector<int> const &polygon) {
@@ -502,7 +502,7 @@ void expectSound(Shape const &shape, SurfaceCase const &surfaceCase,
             if (!hasFace[std::size_t(face)]) {
                 continue;
             }
-            Tessellation const &tessellation = mesh.tessellations[std::size_t(face)];
+            LevelTessellation const &tessellation = mesh.tessellations[std::size_t(face)];
             ASSERT_NO_FATAL_FAILURE(expectPlaneTiling(tessellation));
             Surface<double> const &surface = surfaces[face];
             std::vector<double> control(3 * std::size_t(surface.GetNumControlPoints()));

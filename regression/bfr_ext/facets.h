@@ -2,7 +2,7 @@
 #ifndef OPENSUBDIVHEX_REGRESSION_BFR_EXT_FACETS_H
 #define OPENSUBDIVHEX_REGRESSION_BFR_EXT_FACETS_H
 
-#include "bfr_ext/tessellation.h"
+#include "bfr_ext/levelTessellation.h"
 
 #include <gtest/gtest.h>
 #include <opensubdiv/far/types.h>
@@ -13,7 +13,7 @@
 namespace OpenSubdivHex::Regression {
 
 /// The facets of a tessellation as lists of its places.
-inline std::vector<std::vector<int>> GetFacets(BfrExt::Tessellation const &tessellation) {
+inline std::vector<std::vector<int>> GetFacets(BfrExt::LevelTessellation const &tessellation) {
     std::vector<int> sizes(std::size_t(tessellation.GetNumFacets()));
     EXPECT_EQ(tessellation.GetFacetSizes(sizes.data()), tessellation.GetNumFacets());
     int const stride = tessellation.GetFacetStride();

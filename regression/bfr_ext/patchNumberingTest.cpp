@@ -25,12 +25,12 @@
 
 namespace OpenSubdivHex::Regression::patchNumberingTest {
 
+using BfrExt::LevelTessellation;
 using BfrExt::PatchLevels;
 using BfrExt::PatchNumbering;
 using BfrExt::PatchStream;
 using BfrExt::PlySink;
 using BfrExt::SurfaceFactory;
-using BfrExt::Tessellation;
 
 namespace {
 
@@ -45,7 +45,7 @@ Sdc::Options getEdgeOnly() {
 
 PatchStream<double>::Options getOptions(int facetSize) {
     return PatchStream<double>::Options().SetTessellationOptions(
-        Tessellation::Options().SetFacetSize(facetSize));
+        LevelTessellation::Options().SetFacetSize(facetSize));
 }
 
 /// What the faces of a stream are: as they come by chance, or with faces 0 and 1 so fine that they come in
@@ -93,7 +93,7 @@ struct Joined {
     }
 
     void Add(PatchStream<double>::Patch const &patch) {
-        Tessellation const &tessellation = patch.tessellation;
+        LevelTessellation const &tessellation = patch.tessellation;
         std::vector<Number> numbers(std::size_t(tessellation.GetNumCoords()));
         numbering->GetPoints(patch.face, tessellation, numbers.data());
         for (std::size_t i = 0; i < numbers.size(); ++i) {

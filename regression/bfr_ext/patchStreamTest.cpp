@@ -23,11 +23,11 @@
 
 namespace OpenSubdivHex::Regression::patchStreamTest {
 
+using BfrExt::LevelTessellation;
 using BfrExt::PatchLevels;
 using BfrExt::PatchStream;
 using BfrExt::Surface;
 using BfrExt::SurfaceFactory;
-using BfrExt::Tessellation;
 using FarExt::StatusCode;
 
 namespace {
@@ -85,7 +85,7 @@ void expectSurfaces(Shape const &shape, ReferenceMask mask, int numLevels, doubl
             ASSERT_TRUE(factory->InitVertexSurface(face, &surface));
             std::vector<REAL> control(3 * std::size_t(surface.GetNumControlPoints()));
             surface.GatherControlPoints(positions.data(), 3, control.data(), 3);
-            Tessellation const tessellation = stream.MakeTessellation(face, section);
+            LevelTessellation const tessellation = stream.MakeTessellation(face, section);
             std::vector<REAL> points(3 * std::size_t(tessellation.GetNumCoords()));
             surface.Evaluate(tessellation, control.data(), 3, points.data(), 3);
             ASSERT_EQ(found.size(), points.size());
@@ -185,7 +185,7 @@ TEST(PatchStreamTest, HandsOutCellsOfTreesAndFurtherValues) {
             int numPatches = 0;
             auto const expectEqual = [&](Surface<double> const &surface, double const *from,
                                          Surface<double>::PointDescriptor const &desc,
-                                         Tessellation const &tessellation,
+                                         LevelTessellation const &tessellation,
                                          std::array<double const *, 3> const &results) {
                 auto const size = std::size_t(desc.size);
                 std::vector<double> control(size * std::size_t(surface.GetNumControlPoints()));
@@ -208,7 +208,7 @@ TEST(PatchStreamTest, HandsOutCellsOfTreesAndFurtherValues) {
                 [&](Stream::Patch const &patch) {
                     std::lock_guard<std::mutex> const lock(mutex);
                     ++numPatches;
-                    Tessellation const tessellation = forest.GetTessellation(patch.face);
+                    LevelTessellation const tessellation = forest.GetTessellation(patch.face);
                     EXPECT_EQ(patch.tessellation.GetNumFacets(), tessellation.GetNumFacets());
                     EXPECT_EQ(patch.tessellation.GetNumCoords(), tessellation.GetNumCoords());
                     Surface<double> surface;
@@ -258,10 +258,10 @@ TEST(PatchStreamTest, HandsOutTreesThatFacesShare) {
             stream.Run(shape.positions.data(), 3, [&](PatchStream<double>::Patch const &patch) {
                 std::lock_guard<std::mutex> const lock(mutex);
                 ++numPatches;
-                Tessellation const expected = forest.GetTessellation(patch.face);
+                LevelTessellation const expected = forest.GetTessellation(patch.face);
                 EXPECT_EQ(patch.tessellation.GetNumCoords(), expected.GetNumCoords());
                 std::vector<double> coords[2];
-                for (Tessellation const *t : {&patch.tessellation, &expected}) {
+                for (LevelTessellation const *t : {&patch.tessellation, &expected}) {
                     std::vector<double> &of = coords[t == &expected ? 1 : 0];
                     of.resize(2 * std::size_t(t->GetNumCoords()));
                     t->GetCoords(of.data());
@@ -321,7 +321,7 @@ TEST(PatchStreamTest, RefusesBeforeAnythingIsHandedOut) {
     FarExt::CallStatus status;
     auto const run = [&](PatchLevels const &levels, int begin, int end, int facetSize) {
         PatchStream<double>::Options options;
-        options.SetTessellationOptions(Tessellation::Options().SetFacetSize(facetSize));
+        options.SetTessellationOptions(LevelTessellation::Options().SetFacetSize(facetSize));
         return PatchStream<double>(*factory, levels, options)
             .Run(shape.positions.data(), 3, begin, end, sink, &status);
     };

@@ -212,7 +212,7 @@ TEST(SecondDerivatives, OfTessellationsAndStencilsAreThoseOfPlaces) {
     for (ReferenceMask const mask : {ReferenceMask::Average, ReferenceMask::Smooth}) {
         SurfaceOf const of(GetShape("icosahedron"), mask, 3);
         BfrExt::Surface<double> const &surface = of.surface;
-        BfrExt::Tessellation const tessellation(surface.GetParameterization(), 2);
+        BfrExt::LevelTessellation const tessellation(surface.GetParameterization(), 2);
         auto const numPlaces = std::size_t(tessellation.GetNumCoords());
         std::vector<double> coords(2 * numPlaces);
         tessellation.GetCoords(coords.data());
@@ -310,7 +310,7 @@ TEST(SecondDerivatives, OfInvalidSurfacesAreNotWritten) {
     EXPECT_EQ(surface.EvaluateStencil(uv, results, results + 1, results + 2, results + 3,
                                       results + 4, results + 5),
               0);
-    surface.Evaluate(BfrExt::Tessellation(BfrExt::Parameterization(4), 1), point, 1, results,
+    surface.Evaluate(BfrExt::LevelTessellation(BfrExt::Parameterization(4), 1), point, 1, results,
                      results + 1, results + 2, results + 3, results + 4, results + 5, 1);
     EXPECT_EQ(std::count(results, results + 6, 7.0), 6);
 }

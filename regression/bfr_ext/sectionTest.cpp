@@ -20,9 +20,9 @@
 namespace OpenSubdivHex::Regression::sectionTest {
 
 using BfrExt::CellForest;
+using BfrExt::LevelTessellation;
 using BfrExt::PatchStream;
 using BfrExt::SurfaceFactory;
-using BfrExt::Tessellation;
 
 namespace {
 
@@ -48,7 +48,7 @@ struct FaceContents {
 
 template <typename REAL>
 void add(typename PatchStream<REAL>::Patch const &patch, FaceContents<REAL> &contents) {
-    Tessellation const &tessellation = patch.tessellation;
+    LevelTessellation const &tessellation = patch.tessellation;
     ++contents.numPatches;
     auto const numCoords = std::size_t(tessellation.GetNumCoords());
     std::vector<Coord> coords(numCoords);
@@ -131,7 +131,7 @@ void expectSections(Shape const &shape, SurfaceFactory const &factory, int facet
         typename Stream::Options options;
         options.SetMaxMemory(i == 0 ? std::size_t(1) << 30 : 0);
         options.SetDerivatives(hasDerivatives);
-        options.SetTessellationOptions(Tessellation::Options().SetFacetSize(facetSize));
+        options.SetTessellationOptions(LevelTessellation::Options().SetFacetSize(facetSize));
         results[i].resize(std::size_t(factory.GetNumFaces()));
         std::mutex mutex;
         Stream const stream = makeStream(options);

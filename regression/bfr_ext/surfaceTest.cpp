@@ -735,9 +735,9 @@ TEST(SurfaceFactoryTest, WhatDoesNotFitIsNotEvaluated) {
     constexpr double kUntouched = 77;
     constexpr std::size_t kSize = 3 * 64;
     std::vector<double> const control(kSize, 1);
+    using BfrExt::LevelTessellation;
     using BfrExt::Parameterization;
-    using BfrExt::Tessellation;
-    auto const expectNothing = [&](Tessellation const &tessellation) {
+    auto const expectNothing = [&](LevelTessellation const &tessellation) {
         std::vector<double> results(3 * kSize, kUntouched);
         double *const p = results.data();
         surface.Evaluate(tessellation, control.data(), 3, p, 3);
@@ -754,16 +754,17 @@ TEST(SurfaceFactoryTest, WhatDoesNotFitIsNotEvaluated) {
     surface.ApplyStencil(control.data(), control.data(), 3, p);
     surface.ApplyStencilFromMesh(control.data(), control.data(), 3, p + 3);
     EXPECT_EQ(results, std::vector<double>(9, kUntouched));
-    expectNothing(Tessellation(Parameterization(4), 1));
+    expectNothing(LevelTessellation(Parameterization(4), 1));
 
     ASSERT_TRUE(factory->InitVertexSurface(0, &surface));
     for (int const faceSize : {3, 5}) {
-        expectNothing(Tessellation(Parameterization(faceSize), 1));
-        expectNothing(Tessellation(BfrExt::CellTree(faceSize, 1)));
+        expectNothing(LevelTessellation(Parameterization(faceSize), 1));
+        expectNothing(LevelTessellation(BfrExt::CellTree(faceSize, 1)));
     }
-    expectNothing(Tessellation(Parameterization(4), 99));
+    expectNothing(LevelTessellation(Parameterization(4), 99));
     results.resize(3 * 4);
-    surface.Evaluate(Tessellation(Parameterization(4), 0), control.data(), 3, results.data(), 3);
+    surface.Evaluate(LevelTessellation(Parameterization(4), 0), control.data(), 3, results.data(),
+                     3);
     EXPECT_NE(results[0], kUntouched);
 }
 
@@ -865,7 +866,7 @@ TEST(SurfaceFactoryTest, TypesDoNotDependOnWhichFaceComesFirst) {
             EXPECT_TRUE(factory->InitVertexSurface(face, &surface));
             std::vector<double> control(3 * std::size_t(surface.GetNumControlPoints()));
             surface.GatherControlPoints(points.data(), 3, control.data(), 3);
-            BfrExt::Tessellation const tessellation(surface.GetParameterization(), 1);
+            BfrExt::LevelTessellation const tessellation(surface.GetParameterization(), 1);
             std::vector<double> &ofFace = result[std::size_t(face)];
             ofFace.resize(3 * std::size_t(tessellation.GetNumCoords()));
             surface.Evaluate(tessellation, control.data(), 3, ofFace.data(), 3);
@@ -887,7 +888,7 @@ TEST(SurfaceFactoryTest, CellsHaveFewTypesWhateverVerticesAreIrregular) {
         SurfaceSet<double> const surfaces(*refiner, shape.positions, &cache);
         std::size_t const numFaceTypes = cache.GetNumTypes();
         EXPECT_GT(numFaceTypes, std::size_t(shape.GetNumFaces()) / 2);
-        BfrExt::Tessellation const tessellation(surfaces[0].GetParameterization(), 3);
+        BfrExt::LevelTessellation const tessellation(surfaces[0].GetParameterization(), 3);
         auto const size = 3 * std::size_t(tessellation.GetNumCoords());
         std::vector<double> p(size), du(size), dv(size);
         for (int face = 0; face < shape.GetNumFaces(); ++face) {

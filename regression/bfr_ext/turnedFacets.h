@@ -17,7 +17,7 @@ namespace OpenSubdivHex::Regression {
 class TurnedFacets {
 public:
     /// Adds those of the tessellation of a face, with its control points.
-    void Add(BfrExt::Surface<double> const &surface, BfrExt::Tessellation const &tessellation,
+    void Add(BfrExt::Surface<double> const &surface, BfrExt::LevelTessellation const &tessellation,
              std::vector<double> const &control) {
         std::vector<double> p(3 * std::size_t(tessellation.GetNumCoords()));
         std::vector<double> du(p);
@@ -26,7 +26,7 @@ public:
         Add(tessellation, p, du, dv);
     }
     /// The same of points and derivatives that are known, 3 numbers each.
-    void Add(BfrExt::Tessellation const &tessellation, std::vector<double> const &p,
+    void Add(BfrExt::LevelTessellation const &tessellation, std::vector<double> const &p,
              std::vector<double> const &du, std::vector<double> const &dv) {
         for (std::vector<int> const &facet : GetFacets(tessellation)) {
             Vector3 normal = {};

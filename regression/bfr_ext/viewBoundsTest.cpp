@@ -139,7 +139,7 @@ TEST(ViewBounds, StreamsOfForestsAreThoseMadeWithoutThem) {
         SCOPED_TRACE(shape.name);
         Scene scene(shape);
         // To the bit what the surface of a face gives, whichever faces were before.
-        auto const evaluate = [&](int face, BfrExt::Tessellation const &tessellation) {
+        auto const evaluate = [&](int face, BfrExt::LevelTessellation const &tessellation) {
             BfrExt::Surface<double> surface;
             scene.factory->InitVertexSurface(face, &surface);
             std::vector<double> control(3 * std::size_t(surface.GetNumControlPoints()));
@@ -151,7 +151,8 @@ TEST(ViewBounds, StreamsOfForestsAreThoseMadeWithoutThem) {
         auto const stream = [&](CellForest const &forest, int facetSize) {
             Patches patches;
             BfrExt::PatchStream<double>::Options options;
-            options.SetTessellationOptions(BfrExt::Tessellation::Options().SetFacetSize(facetSize));
+            options.SetTessellationOptions(
+                BfrExt::LevelTessellation::Options().SetFacetSize(facetSize));
             FarExt::ExecutorScope const oneThread(nullptr, 1);
             BfrExt::PatchStream<double>(*scene.factory, forest, options)
                 .Run(scene.positions.data(), 3, [&](auto const &patch) {

@@ -1108,7 +1108,7 @@ NumPolygons countPolygons(Shape const &shape) {
     CellForest const forest = view.MakeForest<double>(*factory, shape.positions.data(), 3);
     double numPolygons = 0;
     for (int face = 0; face < forest.GetNumFaces(); ++face) {
-        auto const options = BfrExt::Tessellation::Options().SetFacetSize(0);
+        auto const options = BfrExt::LevelTessellation::Options().SetFacetSize(0);
         numPolygons += forest.GetTessellation(face, options).GetNumFacets();
     }
     BaseCells cells(*refiner, shape.positions);
@@ -1193,7 +1193,8 @@ TEST(View, HardlyAFacetIsTurnedOver) {
                     std::vector<double> control(3 * std::size_t(surface.GetNumControlPoints()));
                     surface.GatherControlPoints(positions.data(), 3, control.data(), 3);
                     auto const add = [&](int facetSize, TurnedFacets &counted) {
-                        auto const ofSize = BfrExt::Tessellation::Options().SetFacetSize(facetSize);
+                        auto const ofSize =
+                            BfrExt::LevelTessellation::Options().SetFacetSize(facetSize);
                         counted.Add(surface, forest.GetTessellation(face, ofSize), control);
                     };
                     add(0, facets[isTruncated].polygons);

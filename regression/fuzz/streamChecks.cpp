@@ -12,10 +12,10 @@
 namespace OpenSubdivHex::Regression {
 
 using BfrExt::CellForest;
+using BfrExt::LevelTessellation;
 using BfrExt::PatchLevels;
 using BfrExt::PatchNumbering;
 using BfrExt::PatchStream;
-using BfrExt::Tessellation;
 
 namespace {
 
@@ -124,7 +124,8 @@ StreamedPlaces<REAL> runStream(MeshSurfaces<REAL> const &mesh, SOURCE const &sou
                                bool hasDerivatives, Dice &dice) {
     typename PatchStream<REAL>::Options options;
     options.SetDerivatives(hasDerivatives);
-    options.SetTessellationOptions(Tessellation::Options().SetFacetSize(dice.IsOneOf(2) ? 3 : 0));
+    options.SetTessellationOptions(
+        LevelTessellation::Options().SetFacetSize(dice.IsOneOf(2) ? 3 : 0));
     if (dice.IsOneOf(2)) {
         options.SetMaxMemory(std::size_t(1) << dice.Roll(24));
     }

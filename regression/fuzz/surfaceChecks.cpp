@@ -15,10 +15,10 @@ namespace OpenSubdivHex::Regression {
 
 using BfrExt::CellForest;
 using BfrExt::CellTree;
+using BfrExt::LevelTessellation;
 using BfrExt::PatchLevels;
 using BfrExt::Polyline;
 using BfrExt::Surface;
-using BfrExt::Tessellation;
 using FarExt::CallStatus;
 using FarExt::TopologyLevel;
 
@@ -172,7 +172,7 @@ bool haveSamePlane(ReferenceValues const &a, ReferenceValues const &b) {
 }
 
 /// Facets cover the face: each side of one is that of another, turned, or on the boundary.
-void checkFacets(Tessellation const &tessellation, int face) {
+void checkFacets(LevelTessellation const &tessellation, int face) {
     std::vector<int> sizes(std::size_t(tessellation.GetNumFacets()));
     tessellation.GetFacetSizes(sizes.data());
     std::vector<int> indices(std::size_t(tessellation.GetNumFacetVertices()));
@@ -206,7 +206,7 @@ void checkFacets(Tessellation const &tessellation, int face) {
 /// The points of a tessellation, with and without derivatives, and those of single places.
 template <typename REAL>
 std::vector<REAL> checkTessellation(MeshSurfaces<REAL> const &mesh,
-                                    Tessellation const &tessellation, int face, Dice &dice) {
+                                    LevelTessellation const &tessellation, int face, Dice &dice) {
     constexpr int kNumPlaces = 40; // about so many are looked at
     REAL const untouched = REAL(-12345.678);
     int const count = tessellation.GetNumCoords();
@@ -401,8 +401,8 @@ void CheckForest(MeshSurfaces<REAL> const &mesh, CellForest const &forest, Dice 
     int const facetSize = dice.IsOneOf(2) ? 3 : 0;
     std::map<int, std::vector<REAL>> pointsByNumber;
     for (int face = 0; face < forest.GetNumFaces(); ++face) {
-        Tessellation const tessellation =
-            forest.GetTessellation(face, Tessellation::Options().SetFacetSize(facetSize));
+        LevelTessellation const tessellation =
+            forest.GetTessellation(face, LevelTessellation::Options().SetFacetSize(facetSize));
         if (!tessellation.IsValid() || !forest.IsMatched(face)) {
             Fail("the tessellation of face ", face, " is not valid");
         }

@@ -221,7 +221,7 @@ int main(int argc, char **argv) {
         ->type_name("FILE")
         ->required();
     app.add_option("-l,--level", arguments.level, "Level of all faces and edges")
-        ->check(CLI::Range(0, BfrExt::Tessellation::kLastLevel))
+        ->check(CLI::Range(0, BfrExt::LevelTessellation::kLastLevel))
         ->capture_default_str();
     app.add_option("--mask", arguments.mask, "Mask of the face points: average, cosine or smooth")
         ->transform(CLI::Transformer(Tools::MapRules<FarExt::FaceMask>(Tools::kMaskNames)))

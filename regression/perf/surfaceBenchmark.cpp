@@ -70,7 +70,7 @@ using OwnSurfaces = Surfaces<BfrExt::SurfaceFactory, OwnSurface>;
 using PeerSurfaces = Surfaces<Bfr::RefinerSurfaceFactory<>, PeerSurface>;
 
 /// Evaluates a tessellation of each face.
-double evaluateOwn(OwnSurfaces const &own, BfrExt::Tessellation const &tessellation,
+double evaluateOwn(OwnSurfaces const &own, BfrExt::LevelTessellation const &tessellation,
                    bool hasDerivatives, Workspace &workspace) {
     for (OwnSurface const &surface : own.surfaces) {
         float *const gathered = workspace.gathered.data();
@@ -199,7 +199,7 @@ Contest makePointContest(BenchMesh const &mesh, bool isRegular) {
     own->Init(workspace->GetNumFaces());
     peer->Init(workspace->GetNumFaces());
     auto const tessellation =
-        std::make_shared<BfrExt::Tessellation>(own->surfaces[0].GetParameterization(), kLevel);
+        std::make_shared<BfrExt::LevelTessellation>(own->surfaces[0].GetParameterization(), kLevel);
     int const numPlaces = tessellation->GetNumCoords();
     for (OwnSurface const &surface : own->surfaces) {
         Require(surface.GetFaceSize() == tessellation->GetFaceSize(), "faces of several sizes");
@@ -257,8 +257,8 @@ Contest makeColdContest(BenchMesh const &mesh) {
     };
     initOwn();
     initPeer();
-    auto const tessellation =
-        std::make_shared<BfrExt::Tessellation>(own->surfaces[0].GetParameterization(), kColdLevel);
+    auto const tessellation = std::make_shared<BfrExt::LevelTessellation>(
+        own->surfaces[0].GetParameterization(), kColdLevel);
     int const numPlaces = tessellation->GetNumCoords();
     takeRoom(*own, *peer, numPlaces, *workspace);
     Contest contest;

@@ -28,10 +28,10 @@
 
 namespace OpenSubdivHex::Regression::nestedTest {
 
+using BfrExt::LevelTessellation;
 using BfrExt::Parameterization;
 using BfrExt::Surface;
 using BfrExt::SurfaceFactory;
-using BfrExt::Tessellation;
 using FarExt::TopologyRefiner;
 
 namespace {
@@ -84,9 +84,9 @@ public:
         for (int const face : faces) {
             _surfaces.push_back(_factory->CreateVertexSurface<double>(face));
             int const size = _surfaces.back()->GetFaceSize();
-            _tessellations.push_back({Tessellation(Parameterization(size), 0),
-                                      Tessellation(Parameterization(size), 2),
-                                      Tessellation(BfrExt::CellTree(size, 4))});
+            _tessellations.push_back({LevelTessellation(Parameterization(size), 0),
+                                      LevelTessellation(Parameterization(size), 2),
+                                      LevelTessellation(BfrExt::CellTree(size, 4))});
         }
     }
 
@@ -96,7 +96,7 @@ public:
             Surface<double> const &surface = *_surfaces[i];
             std::vector<double> control(kDim * std::size_t(surface.GetNumControlPoints()));
             surface.GatherControlPoints(positions.data(), kDim, control.data(), kDim);
-            for (Tessellation const &tessellation : _tessellations[i]) {
+            for (LevelTessellation const &tessellation : _tessellations[i]) {
                 std::size_t const size = kDim * std::size_t(tessellation.GetNumCoords());
                 std::vector<double> results(3 * size);
                 if (hasDerivatives) {
@@ -116,7 +116,7 @@ public:
 private:
     std::unique_ptr<SurfaceFactory> _factory;
     std::vector<std::unique_ptr<Surface<double>>> _surfaces;
-    std::vector<std::vector<Tessellation>> _tessellations;
+    std::vector<std::vector<LevelTessellation>> _tessellations;
 };
 
 std::unique_ptr<TopologyRefiner> createRefiner(Shape const &shape, int level) {

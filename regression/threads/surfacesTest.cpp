@@ -23,10 +23,10 @@
 namespace OpenSubdivHex::Regression::surfacesTest {
 
 using BfrExt::CellForest;
+using BfrExt::LevelTessellation;
 using BfrExt::Surface;
 using BfrExt::SurfaceFactory;
 using BfrExt::SurfaceFactoryCache;
-using BfrExt::Tessellation;
 using FarExt::TopologyRefiner;
 
 namespace {
@@ -49,7 +49,7 @@ std::unique_ptr<SurfaceFactory> createFactory(TopologyRefiner const &refiner,
 }
 
 /// The points of a surface, with derivatives: at a place, and of a tessellation.
-void addPoints(Surface<double> const &surface, Tessellation const &tessellation,
+void addPoints(Surface<double> const &surface, LevelTessellation const &tessellation,
                std::vector<double> const &positions, std::vector<double> *all) {
     std::vector<double> control(kDim * std::size_t(surface.GetNumPatchPoints()));
     surface.PreparePatchPoints(positions.data(), kDim, control.data(), kDim);
@@ -75,7 +75,7 @@ std::vector<double> evaluateAll(SurfaceFactory const &factory, Shape const &shap
     std::vector<double> all;
     for (int i = 0; i < 2 * factory.GetNumFaces(); ++i) {
         int const face = i / 2;
-        Tessellation const tessellation(factory.GetFaceParameterization(face), 2);
+        LevelTessellation const tessellation(factory.GetFaceParameterization(face), 2);
         Surface<double> surface;
         EXPECT_TRUE(factory.InitVertexSurface(face, &surface));
         addPoints(surface, tessellation, positions, &all);
@@ -158,16 +158,16 @@ TEST(SharedSurfaces, OfOneTessellation) {
     // What a tessellation is evaluated with is found for the first surface.
     auto const makeTessellations = [] {
         int const levels[] = {4, 1, 5, 2, 3};
-        std::vector<Tessellation> made;
+        std::vector<LevelTessellation> made;
         made.emplace_back(BfrExt::Parameterization(4), 5, levels);
         made.emplace_back(BfrExt::CellTree(4, 4));
         return made;
     };
     auto const evaluate = [&](std::vector<Surface<double>> const &surfaces,
-                              std::vector<Tessellation> const &tessellations) {
+                              std::vector<LevelTessellation> const &tessellations) {
         std::vector<double> all;
         for (Surface<double> const &surface : surfaces) {
-            for (Tessellation const &tessellation : tessellations) {
+            for (LevelTessellation const &tessellation : tessellations) {
                 addPoints(surface, tessellation, shape.positions, &all);
             }
         }

@@ -11,7 +11,7 @@
 
 namespace OpenSubdivHex::Tools {
 
-using BfrExt::Tessellation;
+using BfrExt::LevelTessellation;
 
 namespace {
 
@@ -22,7 +22,7 @@ constexpr int kMinNumCells = 1 << 15;
 
 /// What becomes of a base face.
 struct CellPieces::Patch {
-    explicit Patch(Tessellation cells)
+    explicit Patch(LevelTessellation cells)
         : tessellation(std::move(cells)), facets(std::size_t(tessellation.GetNumFacetVertices())),
           sizes(std::size_t(tessellation.GetNumFacets())), levels(sizes.size()) {
         tessellation.GetFacets(facets.data());
@@ -30,7 +30,7 @@ struct CellPieces::Patch {
         tessellation.GetFacetLevels(levels.data());
     }
 
-    Tessellation tessellation;
+    LevelTessellation tessellation;
     std::vector<int> facets; // places of all
     std::vector<int> sizes;
     std::vector<int> levels;
@@ -132,8 +132,8 @@ bool CellPieces::MakeNext() {
     std::vector<std::unique_ptr<Patch>> patches(std::size_t(_nextFace - firstFace));
     ForEachFace(int(patches.size()), [&](int i) {
         if (hasFace(firstFace + i)) {
-            patches[std::size_t(i)] = std::make_unique<Patch>(
-                _forest.GetTessellation(firstFace + i, Tessellation::Options().SetFacetSize(0)));
+            patches[std::size_t(i)] = std::make_unique<Patch>(_forest.GetTessellation(
+                firstFace + i, LevelTessellation::Options().SetFacetSize(0)));
             evaluate(firstFace + i, *patches[std::size_t(i)]);
         }
     });

@@ -9,8 +9,8 @@
 
 namespace OpenSubdivHex::Tools {
 
+using BfrExt::LevelTessellation;
 using BfrExt::SurfaceFactory;
-using BfrExt::Tessellation;
 
 namespace {
 
@@ -105,8 +105,8 @@ void CellView::Refine(BfrExt::View const &view, std::vector<float> const &contro
         Face &face = _faces[std::size_t(number)];
         if (face.surface.IsValid()) {
             auto const tessellate = [&](int facetSize) {
-                return std::make_unique<Tessellation>(_forest->GetTessellation(
-                    number, Tessellation::Options().SetFacetSize(facetSize)));
+                return std::make_unique<LevelTessellation>(_forest->GetTessellation(
+                    number, LevelTessellation::Options().SetFacetSize(facetSize)));
             };
             face.polygons = tessellate(0);
             face.triangles = tessellate(kLength);
@@ -137,7 +137,7 @@ void CellView::numberPlaces() {
         if (!face.surface.IsValid()) {
             continue;
         }
-        Tessellation const &tessellation = *face.polygons;
+        LevelTessellation const &tessellation = *face.polygons;
         face.points.resize(std::size_t(tessellation.GetNumCoords()));
         face.sides.clear();
         _forest->GetBoundaryPoints(number, face.points.data());
@@ -188,7 +188,7 @@ void CellView::findTopology() {
 }
 
 void CellView::addTriangles(int number, Face const &face) {
-    Tessellation const &triangles = *face.triangles;
+    LevelTessellation const &triangles = *face.triangles;
     std::vector<int> places(std::size_t(triangles.GetNumFacetVertices()));
     triangles.GetFacets(places.data());
     std::vector<int> levels(std::size_t(triangles.GetNumFacets()));

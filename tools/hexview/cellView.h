@@ -52,10 +52,10 @@ private:
     struct Face {
         BfrExt::Surface<float> surface;
         BfrExt::Surface<float> uvSurface;
-        std::unique_ptr<BfrExt::Tessellation> polygons;
-        std::unique_ptr<BfrExt::Tessellation> triangles; // of the same places
-        std::vector<int> points;                         // by place
-        std::vector<int> sides;                          // likewise
+        std::unique_ptr<BfrExt::LevelTessellation> polygons;
+        std::unique_ptr<BfrExt::LevelTessellation> triangles; // of the same places
+        std::vector<int> points;                              // by place
+        std::vector<int> sides;                               // likewise
     };
 
     void numberPlaces();

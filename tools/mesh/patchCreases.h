@@ -2,7 +2,7 @@
 #ifndef OPENSUBDIVHEX_TOOLS_PATCH_CREASES_H
 #define OPENSUBDIVHEX_TOOLS_PATCH_CREASES_H
 
-#include "bfr_ext/tessellation.h"
+#include "bfr_ext/levelTessellation.h"
 #include "far_ext/topologyLevel.h"
 #include "mesh.h"
 
@@ -13,7 +13,7 @@ namespace OpenSubdivHex::Tools {
 ///
 /// \param vertices  of the tessellation's coords
 inline void AddPatchCreases(FarExt::TopologyLevel const &base, int face,
-                            BfrExt::Tessellation const &tessellation,
+                            BfrExt::LevelTessellation const &tessellation,
                             std::vector<int> const &vertices, MeshTags *tags) {
     int const numBoundary = tessellation.GetNumBoundaryCoords();
     FarExt::TopologyLevel::ConstIndexArray const edges = base.GetFaceEdges(face);

@@ -2,7 +2,7 @@
 //
 // Tutorial description:
 //
-//     Tessellation: each face as fine as it needs to be, and no gaps between them.
+//     LevelTessellation: each face as fine as it needs to be, and no gaps between them.
 //
 //     A tessellation has a level for the inside of a face and one for each edge.  Whoever gives an
 //     edge the same level in both of its faces gets the same points there, to the bit.  So the facets
@@ -38,7 +38,7 @@ int main() {
     // A level for each face, by whatever tells how fine it is to be.  An edge has that of the finer of
     // its faces.
     int const faceLevels[] = {0, 1, 2, 3, 4, 5};
-    BfrExt::Tessellation::Options options;
+    BfrExt::LevelTessellation::Options options;
     options.SetFacetSize(3);
 
     // The same points have the same number.
@@ -65,8 +65,8 @@ int main() {
             levels.push_back(level);
         }
         levels.push_back(faceLevels[face]);
-        BfrExt::Tessellation const tessellation(surface.GetParameterization(), int(levels.size()),
-                                                levels.data(), options);
+        BfrExt::LevelTessellation const tessellation(surface.GetParameterization(),
+                                                     int(levels.size()), levels.data(), options);
 
         points.resize(std::size_t(tessellation.GetNumCoords()));
         surface.Evaluate(tessellation, controlPoints.data(), 3, points[0].data(), 3);

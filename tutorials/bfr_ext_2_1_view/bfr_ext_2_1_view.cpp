@@ -29,9 +29,9 @@ static std::set<std::pair<int, int>> collectSides(BfrExt::CellForest const &fore
     std::set<std::pair<int, int>> sides;
     int numPoints = int(forest.GetNumBoundaryPoints());
     for (int face = 0; face < forest.GetNumFaces(); ++face) {
-        BfrExt::Tessellation::Options options;
+        BfrExt::LevelTessellation::Options options;
         options.SetFacetSize(0); // polygons
-        BfrExt::Tessellation const tessellation = forest.GetTessellation(face, options);
+        BfrExt::LevelTessellation const tessellation = forest.GetTessellation(face, options);
 
         std::vector<int> boundary(std::size_t(tessellation.GetNumBoundaryCoords()));
         forest.GetBoundaryPoints(face, boundary.data());

@@ -13,7 +13,7 @@
 
 namespace OpenSubdivHex::Tools {
 
-using BfrExt::Tessellation;
+using BfrExt::LevelTessellation;
 
 namespace {
 
@@ -51,7 +51,7 @@ BfrExt::Camera findCamera(Camera const &camera, int height) {
 
 // Where the surface is evaluated in one face.
 struct Patch {
-    Tessellation tessellation;
+    LevelTessellation tessellation;
     std::vector<int> points; // by place
     std::vector<float> p;
     std::vector<float> du;
@@ -119,14 +119,15 @@ void CellSurface::Update(std::vector<float> const &positions, Camera const &came
         if (base.IsFaceHole(face)) {
             continue;
         }
-        patches.push_back({_forest->GetTessellation(face, Tessellation::Options().SetFacetSize(0)),
-                           {},
-                           {},
-                           {},
-                           {}});
+        patches.push_back(
+            {_forest->GetTessellation(face, LevelTessellation::Options().SetFacetSize(0)),
+             {},
+             {},
+             {},
+             {}});
         Patch &patch = patches.back();
         evaluate(*_factory, face, _points, &patch);
-        Tessellation const &tessellation = patch.tessellation;
+        LevelTessellation const &tessellation = patch.tessellation;
         patch.points.resize(std::size_t(tessellation.GetNumCoords()));
         int const numBoundary = _forest->GetBoundaryPoints(face, patch.points.data());
         std::iota(patch.points.begin() + numBoundary, patch.points.end(), numPoints);

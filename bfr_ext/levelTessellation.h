@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-#ifndef OPENSUBDIVHEX_BFR_EXT_TESSELLATION_H
-#define OPENSUBDIVHEX_BFR_EXT_TESSELLATION_H
+#ifndef OPENSUBDIVHEX_BFR_EXT_LEVEL_TESSELLATION_H
+#define OPENSUBDIVHEX_BFR_EXT_LEVEL_TESSELLATION_H
 
 #include "cellTree.h"
 #include "parameterization.h"
@@ -21,7 +21,7 @@ struct PatchPlan;
 /// \brief A base face cut into facets, as Bfr::Tessellation: places in its parameter plane, at which a
 /// Surface is evaluated, and the facets between them.
 ///
-/// In place of Bfr's rates there are levels of refinement.  The places are those of vertices, and the
+/// In place of Bfr's rates there are levels of refinement; for rates, a Surface takes a Bfr::Tessellation.  The places are those of vertices, and the
 /// facets are cells: the F-face and the halves of hexagons that the refined levels have in the face.
 /// At level d an edge is a polyline of 1, 1, 3, 5, 11, 21, 43 ... segments (d = 0, 1, 2 ...), each of
 /// which has the points of the one before, too.
@@ -38,7 +38,7 @@ struct PatchPlan;
 /// face, and fits to others as a face does to its neighbours.
 ///
 /// Nothing is changed after construction: several threads may use it.  std::bad_alloc passes through.
-class OPENSUBDIVHEX_API Tessellation {
+class OPENSUBDIVHEX_API LevelTessellation {
 public:
     /// The last level, of the inside and of edges.
     static constexpr int kLastLevel = CellTree::kLastLevel;
@@ -85,14 +85,15 @@ public:
     /// The tessellation is invalid for other levels, for an invalid parameterization, for a facet size
     /// that is none of the three, for strides that are less than what they are between, and for so many
     /// cells that as triangles they have more than 2^31 - 1 indices.
-    Tessellation(Parameterization const &parameterization, int level, Options options = Options());
+    LevelTessellation(Parameterization const &parameterization, int level,
+                      Options options = Options());
     /// \brief Levels of the edges and of the inside.
     ///
     /// \param numLevels  1: that of all; the number of edges: those of edges 0 ..., edge i from vertex
     ///                   i to the next, and inside the largest of them; one more: those of edges, then
     ///                   that of the inside
-    Tessellation(Parameterization const &parameterization, int numLevels, int const levels[],
-                 Options options = Options());
+    LevelTessellation(Parameterization const &parameterization, int numLevels, int const levels[],
+                      Options options = Options());
 
     /// \brief The cells of a tree, beside neighbours with trees of their own.
     ///
@@ -103,8 +104,8 @@ public:
     ///                 those of the tree (CellTree::GetEdgePolyline()), merged with the neighbour's
     ///                 (Polyline::Merge()); null: those of the tree
     /// \param options  how facets and arrays are to be
-    explicit Tessellation(CellTree const &tree, Polyline const edges[] = nullptr,
-                          Options options = Options());
+    explicit LevelTessellation(CellTree const &tree, Polyline const edges[] = nullptr,
+                               Options options = Options());
 
     /// Whether the arguments were as they have to be, and it has not been moved from.
     bool IsValid() const { return !_places.empty(); }
@@ -261,7 +262,7 @@ private:
     };
 
     // That of a section of a face.
-    Tessellation(internal::FaceSections const &sections, int section, Options const &options);
+    LevelTessellation(internal::FaceSections const &sections, int section, Options const &options);
 
     // Which cells the places inside lie in, made when it is first asked for; of levels, and of trees that
     // are not large.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tessellation.h"
+#include "levelTessellation.h"
 
 #include "cell/cellPlan.h"
 #include "cell/cellStencil.h"
@@ -179,16 +179,18 @@ bool areTooMany(double numTriangles) {
 
 } // namespace
 
-Tessellation::Tessellation(Parameterization const &parameterization, int level, Options options) {
+LevelTessellation::LevelTessellation(Parameterization const &parameterization, int level,
+                                     Options options) {
     initialize(parameterization, 1, &level, options);
 }
 
-Tessellation::Tessellation(Parameterization const &parameterization, int numLevels,
-                           int const levels[], Options options) {
+LevelTessellation::LevelTessellation(Parameterization const &parameterization, int numLevels,
+                                     int const levels[], Options options) {
     initialize(parameterization, numLevels, levels, options);
 }
 
-Tessellation::Tessellation(CellTree const &tree, Polyline const edges[], Options options) {
+LevelTessellation::LevelTessellation(CellTree const &tree, Polyline const edges[],
+                                     Options options) {
     std::vector<Polyline> polylines;
     bool hasAllPoints = true;
     for (int edge = 0; edge < tree.GetFaceSize(); ++edge) {
@@ -212,8 +214,8 @@ Tessellation::Tessellation(CellTree const &tree, Polyline const edges[], Options
     }
 }
 
-Tessellation::Tessellation(internal::FaceSections const &sections, int section,
-                           Options const &options) {
+LevelTessellation::LevelTessellation(internal::FaceSections const &sections, int section,
+                                     Options const &options) {
     if (!setOptions(options)) {
         return;
     }
@@ -243,7 +245,7 @@ Tessellation::Tessellation(internal::FaceSections const &sections, int section,
     setSection(mesh, sections);
 }
 
-bool Tessellation::setOptions(Options const &options) {
+bool LevelTessellation::setOptions(Options const &options) {
     int const facetSize = options.GetFacetSize();
     int const facetStride = options.GetFacetStride() == 0 ? facetSize : options.GetFacetStride();
     int const coordStride = options.GetCoordStride() == 0 ? 2 : options.GetCoordStride();
@@ -258,8 +260,8 @@ bool Tessellation::setOptions(Options const &options) {
     return true;
 }
 
-void Tessellation::initialize(Parameterization const &parameterization, int numLevels,
-                              int const levels[], Options const &options) {
+void LevelTessellation::initialize(Parameterization const &parameterization, int numLevels,
+                                   int const levels[], Options const &options) {
     int const size = parameterization.GetFaceSize();
     bool const areLevelsValid = (numLevels == 1 || numLevels == size || numLevels == size + 1) &&
                                 std::all_of(levels, levels + numLevels, [](int level) {
@@ -277,7 +279,7 @@ void Tessellation::initialize(Parameterization const &parameterization, int numL
                                            : *std::max_element(levels, levels + size));
     }
     if (areTooMany(2 * (internal::FaceSections::CountLeaves(_levels) - 1))) {
-        *this = Tessellation(Parameterization(), 0);
+        *this = LevelTessellation(Parameterization(), 0);
         return;
     }
     std::vector<Polyline> edges;
@@ -288,7 +290,7 @@ void Tessellation::initialize(Parameterization const &parameterization, int numL
 }
 
 // Of points and of derivatives.
-struct Tessellation::LazyCellPlan {
+struct LevelTessellation::LazyCellPlan {
     std::once_flag once[2];
     std::unique_ptr<internal::CellPlan const> plans[2];
     std::once_flag onceSelection;
@@ -296,7 +298,7 @@ struct Tessellation::LazyCellPlan {
 };
 
 // The highest of the places that a plan has.
-int Tessellation::getLevelOfPlaces(bool isOfDerivatives) const {
+int LevelTessellation::getLevelOfPlaces(bool isOfDerivatives) const {
     if (!_tree) {
         return isOfDerivatives ? *std::max_element(_levels.begin(), _levels.end()) : _levels.back();
     }
@@ -312,7 +314,7 @@ int Tessellation::getLevelOfPlaces(bool isOfDerivatives) const {
     return level;
 }
 
-internal::CellPlan const &Tessellation::getCellPlan(bool isOfDerivatives) const {
+internal::CellPlan const &LevelTessellation::getCellPlan(bool isOfDerivatives) const {
     using internal::CellPlan;
     std::unique_ptr<CellPlan const> &plan = _cellPlan->plans[isOfDerivatives ? 1 : 0];
     std::call_once(_cellPlan->once[isOfDerivatives ? 1 : 0], [&] {
@@ -328,10 +330,10 @@ internal::CellPlan const &Tessellation::getCellPlan(bool isOfDerivatives) const 
     return *plan;
 }
 
-Tessellation::Selection const &Tessellation::getSelection() const {
+LevelTessellation::Selection const &LevelTessellation::getSelection() const {
     Selection &selection = _cellPlan->selection;
     std::call_once(_cellPlan->onceSelection, [&] {
-        Tessellation const uniform(_parameterization, getLevelOfPlaces(false));
+        LevelTessellation const uniform(_parameterization, getLevelOfPlaces(false));
         selection.levels = uniform._levels;
         std::map<std::tuple<int, double, double>, int> numbers;
         int const numOnBorder = uniform.GetNumBoundaryCoords();
@@ -348,7 +350,7 @@ Tessellation::Selection const &Tessellation::getSelection() const {
     return selection;
 }
 
-std::size_t Tessellation::getSizeOfCells(bool hasDerivatives) const {
+std::size_t LevelTessellation::getSizeOfCells(bool hasDerivatives) const {
     if (_tree) {
         constexpr std::size_t kBytesOfCell = 16;
         constexpr std::size_t kBytesOfPlace = 32; // of a plan, with the share of a leaf
@@ -360,7 +362,7 @@ std::size_t Tessellation::getSizeOfCells(bool hasDerivatives) const {
 }
 
 // Takes the vertices of the mesh in an order, those of the boundary first, and returns their places.
-std::vector<int> Tessellation::setPlaces(CellMesh const &mesh, std::vector<int> const &order) {
+std::vector<int> LevelTessellation::setPlaces(CellMesh const &mesh, std::vector<int> const &order) {
     std::vector<CellMesh::Vertex> const &verts = mesh.GetVertices();
     std::vector<int> places(verts.size(), kInvalid);
     FarExt::internal::BasePolygon const polygon(GetFaceSize());
@@ -383,13 +385,13 @@ std::vector<int> Tessellation::setPlaces(CellMesh const &mesh, std::vector<int> 
     return places;
 }
 
-void Tessellation::sortByCell(std::vector<CellCorner> &corners) {
+void LevelTessellation::sortByCell(std::vector<CellCorner> &corners) {
     std::sort(corners.begin(), corners.end(), [](CellCorner const &a, CellCorner const &b) {
         return a.cell != b.cell ? a.cell < b.cell : a.corner < b.corner;
     });
 }
 
-std::vector<Tessellation::CellCorner> Tessellation::findCornersOfDerivatives() const {
+std::vector<LevelTessellation::CellCorner> LevelTessellation::findCornersOfDerivatives() const {
     CellTree const &tree = _tree->cells;
     std::vector<CellCorner> corners;
     corners.reserve(_places.size());
@@ -416,7 +418,7 @@ std::vector<Tessellation::CellCorner> Tessellation::findCornersOfDerivatives() c
 }
 
 // All that the mesh has.
-void Tessellation::setCells(CellMesh const &mesh) {
+void LevelTessellation::setCells(CellMesh const &mesh) {
     std::size_t const numVerts = mesh.GetVertices().size();
     std::vector<bool> isOnBoundary(numVerts);
     std::vector<int> order;
@@ -439,7 +441,7 @@ void Tessellation::setCells(CellMesh const &mesh) {
 }
 
 // What the polygons of a section have: the mesh has more beside it.
-void Tessellation::setSection(CellMesh const &mesh, internal::FaceSections const &sections) {
+void LevelTessellation::setSection(CellMesh const &mesh, internal::FaceSections const &sections) {
     std::vector<int> const polygon = sections.GetPolygon(_section->number);
     std::vector<int> order;
     for (std::size_t i = 0; i < polygon.size(); ++i) {
@@ -486,7 +488,7 @@ void Tessellation::setSection(CellMesh const &mesh, internal::FaceSections const
     setFacets(mesh, setPlaces(mesh, order));
 }
 
-void Tessellation::setFacets(CellMesh const &mesh, std::vector<int> const &places) {
+void LevelTessellation::setFacets(CellMesh const &mesh, std::vector<int> const &places) {
     auto const addFacet = [&](int const *facet, int numVerts, int level) {
         _facetIndices.insert(_facetIndices.end(), facet, facet + numVerts);
         _firstFacetIndices.push_back(int(_facetIndices.size()));
@@ -496,7 +498,7 @@ void Tessellation::setFacets(CellMesh const &mesh, std::vector<int> const &place
     std::size_t const numTriangles =
         2 * std::size_t(GetNumCoords()) - std::size_t(GetNumBoundaryCoords()) - 2;
     if (areTooMany(double(numTriangles))) {
-        *this = Tessellation(Parameterization(), 0);
+        *this = LevelTessellation(Parameterization(), 0);
         return;
     }
     if (_facetSize == 0) {
@@ -534,29 +536,29 @@ void Tessellation::setFacets(CellMesh const &mesh, std::vector<int> const &place
     _facetLevels.shrink_to_fit();
 }
 
-int Tessellation::GetLevels(int levels[]) const {
+int LevelTessellation::GetLevels(int levels[]) const {
     std::copy(_levels.begin(), _levels.end(), levels);
     return int(_levels.size());
 }
 
-bool Tessellation::IsUniform() const {
+bool LevelTessellation::IsUniform() const {
     return !_levels.empty() && std::all_of(_levels.begin(), _levels.end(),
                                            [&](int level) { return level == _levels[0]; });
 }
 
-int Tessellation::GetFacetSizes(int sizes[]) const {
+int LevelTessellation::GetFacetSizes(int sizes[]) const {
     for (std::size_t i = 0; i + 1 < _firstFacetIndices.size(); ++i) {
         sizes[i] = _firstFacetIndices[i + 1] - _firstFacetIndices[i];
     }
     return GetNumFacets();
 }
 
-int Tessellation::GetFacetLevels(int levels[]) const {
+int LevelTessellation::GetFacetLevels(int levels[]) const {
     std::copy(_facetLevels.begin(), _facetLevels.end(), levels);
     return GetNumFacets();
 }
 
-int Tessellation::GetFacets(int facetTuples[]) const {
+int LevelTessellation::GetFacets(int facetTuples[]) const {
     for (std::size_t i = 0; i + 1 < _firstFacetIndices.size(); ++i) {
         int const *const begin = _facetIndices.data() + _firstFacetIndices[i];
         int const *const end = _facetIndices.data() + _firstFacetIndices[i + 1];
@@ -569,7 +571,7 @@ int Tessellation::GetFacets(int facetTuples[]) const {
 }
 
 template <typename FUNCTION>
-void Tessellation::transform(int facetTuples[], FUNCTION function) const {
+void LevelTessellation::transform(int facetTuples[], FUNCTION function) const {
     for (std::size_t i = 0; i + 1 < _firstFacetIndices.size(); ++i) {
         int const size = _firstFacetIndices[i + 1] - _firstFacetIndices[i];
         std::transform(facetTuples, facetTuples + size, facetTuples, function);
@@ -577,20 +579,20 @@ void Tessellation::transform(int facetTuples[], FUNCTION function) const {
     }
 }
 
-void Tessellation::TransformFacetCoordIndices(int facetTuples[], int commonOffset) const {
+void LevelTessellation::TransformFacetCoordIndices(int facetTuples[], int commonOffset) const {
     transform(facetTuples, [=](int index) { return index + commonOffset; });
 }
 
-void Tessellation::TransformFacetCoordIndices(int facetTuples[], int const boundaryIndices[],
-                                              int interiorOffset) const {
+void LevelTessellation::TransformFacetCoordIndices(int facetTuples[], int const boundaryIndices[],
+                                                   int interiorOffset) const {
     int const numBoundary = GetNumBoundaryCoords();
     transform(facetTuples, [=](int index) {
         return index < numBoundary ? boundaryIndices[index] : index + interiorOffset;
     });
 }
 
-void Tessellation::TransformFacetCoordIndices(int facetTuples[], int const boundaryIndices[],
-                                              int const interiorIndices[]) const {
+void LevelTessellation::TransformFacetCoordIndices(int facetTuples[], int const boundaryIndices[],
+                                                   int const interiorIndices[]) const {
     int const numBoundary = GetNumBoundaryCoords();
     transform(facetTuples, [=](int index) {
         return index < numBoundary ? boundaryIndices[index] : interiorIndices[index - numBoundary];

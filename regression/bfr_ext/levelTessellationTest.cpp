@@ -19,22 +19,22 @@
 #include <set>
 #include <utility>
 
-namespace OpenSubdivHex::Regression::tessellationTest {
+namespace OpenSubdivHex::Regression::levelTessellationTest {
 
+using BfrExt::LevelTessellation;
 using BfrExt::Parameterization;
 using BfrExt::Surface;
-using BfrExt::Tessellation;
 
 namespace {
 
 // Segments of polylines.
 constexpr int kNumSegments[] = {1, 1, 3, 5, 11, 21, 43, 85};
 
-Tessellation::Options getOptions(int facetSize) {
-    return Tessellation::Options().SetFacetSize(facetSize);
+LevelTessellation::Options getOptions(int facetSize) {
+    return LevelTessellation::Options().SetFacetSize(facetSize);
 }
 
-std::vector<double> getCoords(Tessellation const &tessellation) {
+std::vector<double> getCoords(LevelTessellation const &tessellation) {
     std::vector<double> coords(2 * std::size_t(tessellation.GetNumCoords()));
     EXPECT_EQ(tessellation.GetCoords(coords.data()), tessellation.GetNumCoords());
     return coords;
@@ -51,7 +51,7 @@ double getArea(std::vector<int> const &polygon, std::vector<double> const &coord
 }
 
 /// The facets tile the face: all are counter-clockwise, meet edge to edge, and leave nothing.
-void expectTiling(Tessellation const &tessellation, double leastArea = 1e-9) {
+void expectTiling(LevelTessellation const &tessellation, double leastArea = 1e-9) {
     std::vector<double> const coords = getCoords(tessellation);
     std::map<std::pair<int, int>, int> sides;
     std::set<int> used;
@@ -89,7 +89,7 @@ void expectTiling(Tessellation const &tessellation, double leastArea = 1e-9) {
 
 } // namespace
 
-TEST(Tessellation, FacetsTileTheFaceForAnyLevels) {
+TEST(LevelTessellation, FacetsTileTheFaceForAnyLevels) {
     std::mt19937 random(7);
     for (int round = 0; round < 150; ++round) {
         int const size = 3 + round % 6;
@@ -98,8 +98,8 @@ TEST(Tessellation, FacetsTileTheFaceForAnyLevels) {
             levels.push_back(int(random() % 6));
         }
         for (int const facetSize : {0, 3, 4}) {
-            Tessellation const tessellation(Parameterization(size), size + 1, levels.data(),
-                                            getOptions(facetSize));
+            LevelTessellation const tessellation(Parameterization(size), size + 1, levels.data(),
+                                                 getOptions(facetSize));
             ASSERT_TRUE(tessellation.IsValid());
             SCOPED_TRACE(testing::Message() << "round " << round << ", facets " << facetSize);
             ASSERT_NO_FATAL_FAILURE(expectTiling(tessellation));
@@ -116,16 +116,16 @@ TEST(Tessellation, FacetsTileTheFaceForAnyLevels) {
 
 // The polygon of the face has 174,784 corners: cutting them off one by one, each found among all that are left, would
 // take minutes.
-TEST(Tessellation, FineEdgesOfACoarsePolygonAreCutInNearlyLinearTime) {
+TEST(LevelTessellation, FineEdgesOfACoarsePolygonAreCutInNearlyLinearTime) {
     constexpr int kSize = 64;
     constexpr int kNumSegmentsOfLastLevel = 2731;
     for (int const numFineEdges : {1, kSize}) {
         std::vector<int> levels(kSize + 1, 0);
-        std::fill_n(levels.begin(), numFineEdges, int(Tessellation::kLastLevel));
+        std::fill_n(levels.begin(), numFineEdges, int(LevelTessellation::kLastLevel));
         for (int const facetSize : {3, 4}) {
             SCOPED_TRACE(testing::Message() << numFineEdges << ", facets " << facetSize);
-            Tessellation const tessellation(Parameterization(kSize), kSize + 1, levels.data(),
-                                            getOptions(facetSize));
+            LevelTessellation const tessellation(Parameterization(kSize), kSize + 1, levels.data(),
+                                                 getOptions(facetSize));
             ASSERT_TRUE(tessellation.IsValid());
             EXPECT_EQ(tessellation.GetNumFacets(),
                       numFineEdges * kNumSegmentsOfLastLevel + kSize - numFineEdges - 2);
@@ -135,7 +135,7 @@ TEST(Tessellation, FineEdgesOfACoarsePolygonAreCutInNearlyLinearTime) {
 }
 
 // A polygon alone, whose boundary is sharp, is refined to the cells of a base face.
-TEST(Tessellation, UniformOnesAreRefinedPolygons) {
+TEST(LevelTessellation, UniformOnesAreRefinedPolygons) {
     Sdc::Options options;
     options.SetVtxBoundaryInterpolation(Sdc::Options::VTX_BOUNDARY_EDGE_ONLY);
     for (char const *const name : {"polygon3", "polygon4", "polygon5", "polygon6", "polygon9"}) {
@@ -144,8 +144,8 @@ TEST(Tessellation, UniformOnesAreRefinedPolygons) {
         for (int level = 0; level <= 4; ++level) {
             SCOPED_TRACE(testing::Message() << name << ", level " << level);
             FarExt::TopologyLevel const &refined = refiner->GetLevel(level);
-            Tessellation const tessellation(Parameterization(shape.faceSizes[0]), level,
-                                            getOptions(0));
+            LevelTessellation const tessellation(Parameterization(shape.faceSizes[0]), level,
+                                                 getOptions(0));
             EXPECT_TRUE(tessellation.IsUniform());
             auto const round = [](double u, double v) {
                 return std::make_pair(std::lround(u * 1e7), std::lround(v * 1e7));
@@ -178,11 +178,11 @@ TEST(Tessellation, UniformOnesAreRefinedPolygons) {
     }
 }
 
-TEST(Tessellation, CoordinatesAndFacetsAreWhereTheyAreAskedFor) {
+TEST(LevelTessellation, CoordinatesAndFacetsAreWhereTheyAreAskedFor) {
     int const levels[] = {2, 3, 0, 2};
-    Tessellation::Options options = getOptions(4);
+    LevelTessellation::Options options = getOptions(4);
     options.SetCoordStride(5).SetFacetStride(6);
-    Tessellation const tessellation(Parameterization(4), 4, levels, options);
+    LevelTessellation const tessellation(Parameterization(4), 4, levels, options);
     ASSERT_TRUE(tessellation.IsValid());
     EXPECT_FALSE(tessellation.IsUniform());
     int all[5];
@@ -235,30 +235,30 @@ TEST(Tessellation, CoordinatesAndFacetsAreWhereTheyAreAskedFor) {
     }
 }
 
-TEST(Tessellation, IsInvalidForWrongArguments) {
+TEST(LevelTessellation, IsInvalidForWrongArguments) {
     int const levels[] = {1, 2, 3, 13, 1, 1};
     Parameterization const quad(4);
-    EXPECT_TRUE(Tessellation(quad, 3, levels).IsValid() == false);
-    EXPECT_FALSE(Tessellation(quad, 4, levels).IsValid());
-    EXPECT_FALSE(Tessellation(quad, 6, levels).IsValid());
-    EXPECT_FALSE(Tessellation(quad, -1).IsValid());
-    EXPECT_FALSE(Tessellation(quad, Tessellation::kLastLevel + 1).IsValid());
-    EXPECT_FALSE(Tessellation(Parameterization(), 1).IsValid());
-    EXPECT_FALSE(Tessellation(Parameterization(2), 1).IsValid());
-    EXPECT_FALSE(Tessellation(quad, 1, getOptions(5)).IsValid());
-    EXPECT_FALSE(Tessellation(quad, 1, getOptions(4).SetFacetStride(3)).IsValid());
-    EXPECT_FALSE(Tessellation(quad, 1, getOptions(3).SetCoordStride(1)).IsValid());
-    EXPECT_EQ(Tessellation(quad, -1).GetNumFacets(), 0);
-    EXPECT_EQ(Tessellation(quad, -1).GetNumCoords(), 0);
-    EXPECT_EQ(Tessellation(quad, -1).GetNumBoundaryCoords(), 0);
+    EXPECT_TRUE(LevelTessellation(quad, 3, levels).IsValid() == false);
+    EXPECT_FALSE(LevelTessellation(quad, 4, levels).IsValid());
+    EXPECT_FALSE(LevelTessellation(quad, 6, levels).IsValid());
+    EXPECT_FALSE(LevelTessellation(quad, -1).IsValid());
+    EXPECT_FALSE(LevelTessellation(quad, LevelTessellation::kLastLevel + 1).IsValid());
+    EXPECT_FALSE(LevelTessellation(Parameterization(), 1).IsValid());
+    EXPECT_FALSE(LevelTessellation(Parameterization(2), 1).IsValid());
+    EXPECT_FALSE(LevelTessellation(quad, 1, getOptions(5)).IsValid());
+    EXPECT_FALSE(LevelTessellation(quad, 1, getOptions(4).SetFacetStride(3)).IsValid());
+    EXPECT_FALSE(LevelTessellation(quad, 1, getOptions(3).SetCoordStride(1)).IsValid());
+    EXPECT_EQ(LevelTessellation(quad, -1).GetNumFacets(), 0);
+    EXPECT_EQ(LevelTessellation(quad, -1).GetNumCoords(), 0);
+    EXPECT_EQ(LevelTessellation(quad, -1).GetNumBoundaryCoords(), 0);
 }
 
-TEST(Tessellation, IsInvalidWhereItIsMovedFrom) {
+TEST(LevelTessellation, IsInvalidWhereItIsMovedFrom) {
     for (bool const isTree : {false, true}) {
-        Tessellation from =
-            isTree ? Tessellation(BfrExt::CellTree(4, 2)) : Tessellation(Parameterization(4), 2);
+        LevelTessellation from = isTree ? LevelTessellation(BfrExt::CellTree(4, 2))
+                                        : LevelTessellation(Parameterization(4), 2);
         int const numFacets = from.GetNumFacets();
-        Tessellation const to = std::move(from);
+        LevelTessellation const to = std::move(from);
         EXPECT_TRUE(to.IsValid());
         EXPECT_EQ(to.GetNumFacets(), numFacets);
         // NOLINTBEGIN(bugprone-use-after-move, clang-analyzer-cplusplus.Move)
@@ -276,16 +276,17 @@ TEST(Tessellation, IsInvalidWhereItIsMovedFrom) {
 }
 
 // Refused before any memory is taken for them.
-TEST(Tessellation, IsInvalidForMoreIndicesThanAnIntCounts) {
+TEST(LevelTessellation, IsInvalidForMoreIndicesThanAnIntCounts) {
     // A face of n sides has n (4^12 - 1)/3 half cells at level 12, of two triangles each.
     for (int const faceSize : {65, 290, 1000, 65535}) {
-        Tessellation const tessellation(Parameterization(faceSize), Tessellation::kLastLevel);
+        LevelTessellation const tessellation(Parameterization(faceSize),
+                                             LevelTessellation::kLastLevel);
         EXPECT_FALSE(tessellation.IsValid());
         EXPECT_EQ(tessellation.GetNumFacets(), 0);
         EXPECT_EQ(tessellation.GetNumCoords(), 0);
         EXPECT_EQ(tessellation.GetNumEdges(), 0);
     }
-    EXPECT_TRUE(Tessellation(Parameterization(1000), 4).IsValid());
+    EXPECT_TRUE(LevelTessellation(Parameterization(1000), 4).IsValid());
 }
 
 namespace {
@@ -298,14 +299,14 @@ struct RandomLevels {
         }
     }
 
-    Tessellation Make(FarExt::TopologyLevel const &base, int face, int facetSize) {
+    LevelTessellation Make(FarExt::TopologyLevel const &base, int face, int facetSize) {
         std::vector<int> levels;
         for (int const edge : base.GetFaceEdges(face)) {
             levels.push_back(edges[std::size_t(edge)]);
         }
         levels.push_back(int(random() % 4));
-        return Tessellation(Parameterization(base.GetFaceVertices(face).size()), int(levels.size()),
-                            levels.data(), getOptions(facetSize));
+        return LevelTessellation(Parameterization(base.GetFaceVertices(face).size()),
+                                 int(levels.size()), levels.data(), getOptions(facetSize));
     }
 
     std::mt19937 random;
@@ -325,7 +326,7 @@ struct Welded {
         SurfaceSet<REAL> const surfaces(*refiner, positions);
         RandomLevels levels(base, seed);
         for (int face = 0; face < base.GetNumFaces(); ++face) {
-            Tessellation const tessellation = levels.Make(base, face, facetSize);
+            LevelTessellation const tessellation = levels.Make(base, face, facetSize);
             Surface<REAL> const &surface = surfaces[face];
             std::vector<REAL> control(3 * std::size_t(surface.GetNumControlPoints()));
             surface.GatherControlPoints(positions.data(), 3, control.data(), 3);
@@ -413,9 +414,9 @@ TEST(TessellationSurface, PointsAreThoseOfSinglePlaces) {
         for (int face = 0; face < std::min(base.GetNumFaces(), kMaxFaces); ++face) {
             Surface<double> const &surface = surfaces[face];
             // Of level 6, a face is taken apart further.
-            Tessellation const tessellation = face == 0
-                                                  ? Tessellation(surface.GetParameterization(), 6)
-                                                  : levels.Make(base, face, 3);
+            LevelTessellation const tessellation =
+                face == 0 ? LevelTessellation(surface.GetParameterization(), 6)
+                          : levels.Make(base, face, 3);
             std::vector<double> control(4 * std::size_t(surface.GetNumControlPoints()));
             surface.GatherControlPoints(shape.positions.data(), 3, control.data(), {3, 4});
             auto const numPlaces = std::size_t(tessellation.GetNumCoords());
@@ -471,7 +472,7 @@ TEST_P(TreeDerivativesTest, AreThoseOfSinglePlaces) {
         std::vector<double> control(3 * std::size_t(surface.GetNumControlPoints()));
         surface.GatherControlPoints(shape.positions.data(), 3, control.data(), 3);
         for (BfrExt::CellTree const &tree : trees) {
-            Tessellation const tessellation(tree);
+            LevelTessellation const tessellation(tree);
             auto const numPlaces = std::size_t(tessellation.GetNumCoords());
             std::vector<double> p(3 * numPlaces), du(3 * numPlaces), dv(3 * numPlaces);
             surface.Evaluate(tessellation, control.data(), 3, p.data(), du.data(), dv.data(), 3);
@@ -516,7 +517,7 @@ TEST(TessellationSurface, BordersInCutLatticesAreThoseOfSinglePlaces) {
                 if (!surface.IsValid()) {
                     continue;
                 }
-                Tessellation const tessellation(surface.GetParameterization(), 3);
+                LevelTessellation const tessellation(surface.GetParameterization(), 3);
                 std::vector<double> control(3 * std::size_t(surface.GetNumControlPoints()));
                 surface.GatherControlPoints(shape.positions.data(), 3, control.data(), 3);
                 std::vector<double> p(3 * std::size_t(tessellation.GetNumCoords()));
@@ -534,4 +535,4 @@ TEST(TessellationSurface, BordersInCutLatticesAreThoseOfSinglePlaces) {
     }
 }
 
-} // namespace OpenSubdivHex::Regression::tessellationTest
+} // namespace OpenSubdivHex::Regression::levelTessellationTest

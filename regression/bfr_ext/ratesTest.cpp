@@ -1,0 +1,507 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// Tessellations of Bfr, with rates: of faces alone, and of neighbours, which share points to the bit.
+#include "surfaceFixture.h"
+
+#include "regression/far_ext/referenceMatch.h"
+#include "regression/shapes/featureShapes.h"
+#include "regression/shapes/meshOperations.h"
+#include "regression/shapes/torus.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <random>
+#include <thread>
+#include <utility>
+
+namespace OpenSubdivHex::Regression::ratesTest {
+
+namespace Bfr = OpenSubdiv::Bfr;
+
+using BfrExt::Parameterization;
+using BfrExt::Surface;
+
+namespace {
+
+Sdc::Options getSmoothBorders() {
+    Sdc::Options options;
+    options.SetVtxBoundaryInterpolation(Sdc::Options::VTX_BOUNDARY_EDGE_ONLY);
+    return options;
+}
+
+template <typename REAL>
+std::vector<REAL> getCoords(Bfr::Tessellation const &tessellation) {
+    EXPECT_EQ(tessellation.GetCoordStride(), 2);
+    std::vector<REAL> coords(2 * std::size_t(tessellation.GetNumCoords()));
+    EXPECT_EQ(tessellation.GetCoords(coords.data()), tessellation.GetNumCoords());
+    return coords;
+}
+
+template <typename REAL>
+std::vector<REAL> gather(Surface<REAL> const &surface, std::vector<REAL> const &positions) {
+    std::vector<REAL> control(3 * std::size_t(surface.GetNumControlPoints()));
+    surface.GatherControlPoints(positions.data(), 3, control.data(), 3);
+    return control;
+}
+
+template <typename REAL>
+std::vector<REAL> evaluate(Surface<REAL> const &surface, std::vector<REAL> const &control,
+                           Bfr::Tessellation const &tessellation) {
+    std::vector<REAL> points(3 * std::size_t(tessellation.GetNumCoords()));
+    surface.Evaluate(tessellation, control.data(), 3, points.data(), 3);
+    return points;
+}
+
+// The facets of all faces, joined where their points have the same bits, are manifold, and open at the borders of
+// the mesh alone.
+//
+// \param getRate  of edge number i of the mesh
+template <typename REAL, typename RATE>
+void expectWelded(FarExt::TopologyRefiner const &refiner, std::vector<REAL> const &positions,
+                  SurfaceSet<REAL> const &surfaces, RATE const &getRate, int facetSize) {
+    using Point = std::array<REAL, 3>;
+    FarExt::TopologyLevel const &base = refiner.GetLevel(0);
+    std::map<Point, int> numbers;
+    std::map<std::pair<int, int>, int> sides;
+    int numFacets = 0;
+    int eulerCharacteristic = base.GetNumFaces() - base.GetNumEdges();
+    for (int vert = 0; vert < base.GetNumVertices(); ++vert) {
+        eulerCharacteristic += base.GetVertexFaces(vert).size() > 0 ? 1 : 0;
+    }
+    int numOpenSegments = 0;
+    for (int edge = 0; edge < base.GetNumEdges(); ++edge) {
+        numOpenSegments += base.IsEdgeBoundary(edge) ? getRate(edge) : 0;
+    }
+    for (int face = 0; face < base.GetNumFaces(); ++face) {
+        std::vector<int> rates;
+        for (int const edge : base.GetFaceEdges(face)) {
+            rates.push_back(getRate(edge));
+        }
+        Surface<REAL> const &surface = surfaces[face];
+        Bfr::Tessellation const tessellation(
+            surface.GetParameterization().GetBfr(), int(rates.size()), rates.data(),
+            Bfr::Tessellation::Options().SetFacetSize(facetSize).PreserveQuads(facetSize == 4));
+        ASSERT_TRUE(tessellation.IsValid());
+        std::vector<REAL> const points =
+            evaluate(surface, gather(surface, positions), tessellation);
+        std::vector<int> indices(std::size_t(facetSize * tessellation.GetNumFacets()));
+        ASSERT_EQ(tessellation.GetFacets(indices.data()), tessellation.GetNumFacets());
+        for (std::size_t first = 0; first < indices.size(); first += std::size_t(facetSize)) {
+            std::vector<int> facet;
+            for (std::size_t i = first; i < first + std::size_t(facetSize); ++i) {
+                if (indices[i] >= 0) {
+                    REAL const *const p = &points[3 * std::size_t(indices[i])];
+                    facet.push_back(numbers.emplace(Point{p[0], p[1], p[2]}, int(numbers.size()))
+                                        .first->second);
+                }
+            }
+            for (std::size_t i = 0; i < facet.size(); ++i) {
+                ++sides[{facet[i], facet[(i + 1) % facet.size()]}];
+            }
+            ++numFacets;
+        }
+    }
+    int numOpen = 0;
+    for (auto const &[side, count] : sides) {
+        ASSERT_EQ(count, 1);
+        numOpen += sides.count({side.second, side.first}) == 0 ? 1 : 0;
+    }
+    EXPECT_EQ(numOpen, numOpenSegments);
+    int const numEdges = (int(sides.size()) + numOpen) / 2;
+    EXPECT_EQ(int(numbers.size()) - numEdges + numFacets, eulerCharacteristic);
+}
+
+template <typename REAL>
+void expectWelded(Shape const &shape, ReferenceMask mask, Sdc::Options const &options,
+                  int facetSize) {
+    SCOPED_TRACE(shape.name);
+    auto const refiner = CreateRefiner(shape, mask, 0, options);
+    std::vector<REAL> const positions(shape.positions.begin(), shape.positions.end());
+    SurfaceSet<REAL> const surfaces(*refiner, positions);
+    constexpr int kMaxRate = 17;
+    std::mt19937 random(5);
+    std::vector<int> rates;
+    for (int edge = 0; edge < refiner->GetLevel(0).GetNumEdges(); ++edge) {
+        rates.push_back(1 + int(random() % kMaxRate));
+    }
+    ASSERT_NO_FATAL_FAILURE(expectWelded(
+        *refiner, positions, surfaces, [&](int edge) { return rates[std::size_t(edge)]; },
+        facetSize));
+}
+
+} // namespace
+
+TEST(Rates, ParameterizationsAreThoseOfBfr) {
+    EXPECT_EQ(Parameterization(3).GetBfr().GetType(), Bfr::Parameterization::TRI);
+    EXPECT_EQ(Parameterization(4).GetBfr().GetType(), Bfr::Parameterization::QUAD);
+    EXPECT_EQ(Parameterization(7).GetBfr().GetType(), Bfr::Parameterization::QUAD_SUBFACES);
+    EXPECT_FALSE(Parameterization().GetBfr().IsValid());
+    std::vector<Bfr::Parameterization> all = {{OpenSubdiv::Sdc::SCHEME_CATMARK, 3}};
+    for (int size = 3; size <= 12; ++size) {
+        all.push_back(Parameterization(size).GetBfr());
+    }
+    for (Bfr::Parameterization const &bfr : all) {
+        int const size = bfr.GetFaceSize();
+        SCOPED_TRACE(testing::Message() << size << " vertices, type " << bfr.GetType());
+        Parameterization const own(size);
+        double uv[2];
+        double expected[2];
+        auto const expectSame = [&] {
+            Parameterization::ConvertFromBfr(bfr, uv, uv);
+            EXPECT_NEAR(uv[0], expected[0], 1e-14);
+            EXPECT_NEAR(uv[1], expected[1], 1e-14);
+        };
+        bfr.GetCenterCoord(uv);
+        own.GetCenterCoord(expected);
+        // Bfr has a third in single precision.
+        EXPECT_NEAR(bfr.GetType() == Bfr::Parameterization::TRI ? uv[0] : 1.0 / 3, 1.0 / 3, 1e-7);
+        if (bfr.GetType() == Bfr::Parameterization::TRI) {
+            uv[0] = uv[1] = 1.0 / 3;
+        }
+        expectSame();
+        for (int edge = 0; edge < size; ++edge) {
+            for (double const t : {0.0, 0.25, 0.4, 0.5, 0.75, 1.0}) {
+                bfr.GetEdgeCoord(edge, t, uv);
+                own.GetEdgeCoord(edge, t, expected);
+                expectSame();
+            }
+        }
+    }
+}
+
+TEST(Rates, ConversionsHaveTheirDerivatives) {
+    constexpr double kStep = 1e-6;
+    for (int const size : {3, 4, 5, 6, 11}) {
+        for (int const type : {0, 1}) {
+            Bfr::Parameterization const bfr =
+                type == 0 ? Parameterization(size).GetBfr()
+                          : Bfr::Parameterization(OpenSubdiv::Sdc::SCHEME_CATMARK, size);
+            Bfr::Tessellation const tessellation(bfr, 7);
+            std::vector<double> coords = getCoords<double>(tessellation);
+            for (std::size_t i = 0; i < coords.size(); i += 2) {
+                double uv[2];
+                double derivatives[4];
+                Parameterization::ConvertFromBfr(bfr, &coords[i], uv, derivatives);
+                for (std::size_t k = 0; k < 2; ++k) {
+                    double near[2] = {coords[i], coords[i + 1]};
+                    near[k] += kStep;
+                    Parameterization::ConvertFromBfr(bfr, near, near);
+                    EXPECT_NEAR((near[0] - uv[0]) / kStep, derivatives[2 * k], 1e-8);
+                    EXPECT_NEAR((near[1] - uv[1]) / kStep, derivatives[2 * k + 1], 1e-8);
+                }
+                // No side is turned over.
+                EXPECT_GT(derivatives[0] * derivatives[3] - derivatives[1] * derivatives[2], 0.1);
+            }
+        }
+    }
+}
+
+TEST(Rates, CoordinatesThatAreNoneConvertToNone) {
+    constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+    constexpr double kInfinite = std::numeric_limits<double>::infinity();
+    for (auto const &[bfr, u, v] : {std::make_tuple(Parameterization(5).GetBfr(), kNan, 0.0),
+                                    std::make_tuple(Parameterization(5).GetBfr(), 0.0, kInfinite),
+                                    std::make_tuple(Bfr::Parameterization(), 0.5, 0.5)}) {
+        double uv[2] = {u, v};
+        double derivatives[4];
+        Parameterization::ConvertFromBfr(bfr, uv, uv, derivatives);
+        EXPECT_TRUE(std::isnan(uv[0]) && std::isnan(uv[1]) && std::isnan(derivatives[3]));
+    }
+    double const outside[2] = {1e300, -1e300};
+    double uv[2];
+    Parameterization::ConvertFromBfr(Parameterization(7).GetBfr(), outside, uv);
+    EXPECT_TRUE(std::isfinite(uv[0]) && std::isfinite(uv[1]));
+}
+
+TEST(Rates, NeighboursShareTheirPointsToTheBit) {
+    for (Shape const &shape : GetManifoldShapes()) {
+        // The two sides of a dihedron lie in one place.
+        if (shape.GetNumFaces() > 40 || shape.name.find("dihedron") == 0) {
+            continue;
+        }
+        ASSERT_NO_FATAL_FAILURE(
+            expectWelded<double>(shape, ReferenceMask::Smooth, getSmoothBorders(), 3));
+        ASSERT_NO_FATAL_FAILURE(
+            expectWelded<float>(shape, ReferenceMask::Average, getSmoothBorders(), 4));
+    }
+}
+
+TEST(Rates, NeighboursShareTheirPointsAtFeatures) {
+    for (char const *const name :
+         {"creaseLoopClosed", "creasedBall", "mixedSharpnessQuads", "cornersTriangles"}) {
+        ASSERT_NO_FATAL_FAILURE(expectWelded<double>(GetFeatureShape(name), ReferenceMask::Cosine,
+                                                     getSmoothBorders(), 4));
+    }
+}
+
+TEST(Rates, NeighboursShareTheirPointsAtEachRate) {
+    constexpr int kMaxRate = 17;
+    for (auto const faces : {TorusFaces::Quads, TorusFaces::Triangles}) {
+        Shape const shape = MakeTorus(5, 4, faces);
+        auto const refiner = CreateRefiner(shape, ReferenceMask::Smooth, 0, Sdc::Options());
+        SurfaceSet<double> const surfaces(*refiner, shape.positions);
+        for (int rate = 1; rate <= kMaxRate; ++rate) {
+            SCOPED_TRACE(testing::Message() << shape.name << ", rate " << rate);
+            ASSERT_NO_FATAL_FAILURE(expectWelded(
+                *refiner, shape.positions, surfaces, [&](int) { return rate; }, 3));
+        }
+    }
+}
+
+// 1 - i/n is rounded where n is no power of 2; a place does not depend on n.
+TEST(Rates, PlacesOfEdgesDoNotDependOnRates) {
+    Shape const shape = MakeChamfered("chamfered", MakeTorus(7, 6, TorusFaces::Quads));
+    auto const refiner = CreateRefiner(shape, ReferenceMask::Smooth, 0, Sdc::Options());
+    SurfaceSet<double> const surfaces(*refiner, shape.positions);
+    auto const expectSame = [](double const *a, double const *b) {
+        EXPECT_EQ(ToVector(a), ToVector(b));
+    };
+    for (int face = 0; face < 60; ++face) {
+        Surface<double> const &surface = surfaces[face];
+        std::vector<double> const control = gather(surface, shape.positions);
+        auto const evaluateAtRate = [&](int rate) {
+            return evaluate(surface, control,
+                            Bfr::Tessellation(surface.GetParameterization().GetBfr(), rate));
+        };
+        std::vector<double> const thirds = evaluateAtRate(3);
+        std::vector<double> const ninths = evaluateAtRate(9);
+        std::vector<double> const quarters = evaluateAtRate(4);
+        BfrExt::LevelTessellation const ofLevel(surface.GetParameterization(), 2);
+        std::vector<double> ofLevelPoints(3 * std::size_t(ofLevel.GetNumCoords()));
+        surface.Evaluate(ofLevel, control.data(), 3, ofLevelPoints.data(), 3);
+        for (std::size_t edge = 0; edge < std::size_t(surface.GetFaceSize()); ++edge) {
+            expectSame(&thirds[3 * (3 * edge + 1)], &ninths[3 * (9 * edge + 3)]);
+            expectSame(&thirds[3 * (3 * edge + 2)], &ninths[3 * (9 * edge + 6)]);
+            expectSame(&quarters[3 * (4 * edge)], &ofLevelPoints[3 * (3 * edge)]);
+            expectSame(&quarters[3 * (4 * edge + 1)], &ofLevelPoints[3 * (3 * edge + 1)]);
+            expectSame(&quarters[3 * (4 * edge + 3)], &ofLevelPoints[3 * (3 * edge + 2)]);
+        }
+    }
+}
+
+namespace {
+
+void expectStencils(Surface<double> const &surface, std::vector<double> const &control,
+                    Bfr::Tessellation const &tessellation, std::size_t step = 1,
+                    double tolerance = 1e-6) {
+    auto const numPlaces = std::size_t(tessellation.GetNumCoords());
+    constexpr std::size_t kStride = 5;
+    std::vector<double> p(kStride * numPlaces), du(kStride * numPlaces), dv(kStride * numPlaces);
+    surface.Evaluate(tessellation, control.data(), 3, p.data(), du.data(), dv.data(),
+                     {3, int(kStride)});
+    std::vector<double> const alone = evaluate(surface, control, tessellation);
+    std::vector<double> const coords = getCoords<double>(tessellation);
+    auto const numPoints = std::size_t(surface.GetNumControlPoints());
+    std::vector<double> stencils[3];
+    for (std::vector<double> &stencil : stencils) {
+        stencil.resize(numPoints);
+    }
+    for (std::size_t i = 0; i < numPlaces; i += step) {
+        SCOPED_TRACE(testing::Message() << "place " << coords[2 * i] << " " << coords[2 * i + 1]);
+        double uv[2];
+        double d[4];
+        Parameterization::ConvertFromBfr(tessellation.GetParameterization(), &coords[2 * i], uv, d);
+        surface.EvaluateStencil(uv, stencils[0].data(), stencils[1].data(), stencils[2].data());
+        double expected[3][3];
+        for (std::size_t k = 0; k < 3; ++k) {
+            surface.ApplyStencil(stencils[k].data(), control.data(), 3, expected[k]);
+        }
+        for (std::size_t k = 0; k < 3; ++k) {
+            ASSERT_EQ(p[kStride * i + k], alone[3 * i + k]);
+            ASSERT_NEAR(p[kStride * i + k], expected[0][k], 1e-3 * tolerance);
+            ASSERT_NEAR(du[kStride * i + k], d[0] * expected[1][k] + d[1] * expected[2][k],
+                        tolerance);
+            ASSERT_NEAR(dv[kStride * i + k], d[2] * expected[1][k] + d[3] * expected[2][k],
+                        tolerance);
+        }
+    }
+}
+
+} // namespace
+
+TEST(Rates, PointsAndDerivativesAreThoseOfStencils) {
+    constexpr int kMaxFaces = 12;
+    Shape const irregular = MakeTorus(9, 7, TorusFaces::IrregularTriangles);
+    Shape const chamfered = MakeChamfered("chamfered", MakeTorus(7, 6, TorusFaces::Quads));
+    std::mt19937 random(7);
+    for (auto const &[shape, mask] :
+         {std::make_pair(GetFeatureShape("mixedSharpnessQuads"), ReferenceMask::Smooth),
+          std::make_pair(GetFeatureShape("bowTieOfFans"), ReferenceMask::Smooth),
+          std::make_pair(irregular, ReferenceMask::Smooth),
+          std::make_pair(chamfered, ReferenceMask::Cosine)}) {
+        SCOPED_TRACE(shape.name);
+        auto const refiner = CreateRefiner(shape, mask, 0, getSmoothBorders());
+        SurfaceSet<double> const surfaces(*refiner, shape.positions);
+        for (int face = 0; face < std::min(shape.GetNumFaces(), kMaxFaces); ++face) {
+            Surface<double> const &surface = surfaces[face];
+            std::vector<int> rates;
+            for (int i = 0; i < surface.GetFaceSize(); ++i) {
+                rates.push_back(1 + int(random() % 9));
+            }
+            expectStencils(
+                surface, gather(surface, shape.positions),
+                {surface.GetParameterization().GetBfr(), int(rates.size()), rates.data()});
+        }
+    }
+}
+
+// A type keeps the matrices of each of them.
+TEST(Rates, InnerRatesOfAQuadAreToldApart) {
+    Shape const shape = MakeTorus(7, 6, TorusFaces::Quads);
+    auto const refiner = CreateRefiner(shape, ReferenceMask::Smooth, 0, Sdc::Options());
+    SurfaceSet<double> const surfaces(*refiner, shape.positions);
+    std::vector<double> const control = gather(surfaces[0], shape.positions);
+    Bfr::Parameterization const quad = Parameterization(4).GetBfr();
+    for (int u = 1; u <= 7; ++u) {
+        for (int v = 1; v <= 7; ++v) {
+            SCOPED_TRACE(testing::Message() << u << " by " << v);
+            int const rates[] = {2, 3, 1, 4, u, v};
+            expectStencils(surfaces[0], control, {quad, 6, rates});
+            expectStencils(surfaces[0], control, {quad, 2, rates + 4});
+        }
+        expectStencils(surfaces[0], control, {quad, u});
+    }
+}
+
+// Blocks of matrices that are kept, and of more places, that are not.
+TEST(Rates, HighRatesAreThoseOfStencils) {
+    Shape const shape = MakeTorus(7, 6, TorusFaces::Quads);
+    auto const refiner = CreateRefiner(shape, ReferenceMask::Smooth, 0, Sdc::Options());
+    SurfaceSet<double> const surfaces(*refiner, shape.positions);
+    std::vector<double> const control = gather(surfaces[0], shape.positions);
+    // Near vertices, stencils of places are those of bilinear cells, and those of edges are not.
+    constexpr double kTolerance = 1e-4;
+    int const rates[] = {40, 3, 1200, 5, 40, 30};
+    expectStencils(surfaces[0], control, {Parameterization(4).GetBfr(), 6, rates}, 41, kTolerance);
+    int const higherRates[] = {1, 2, 3, 4, 70, 62};
+    expectStencils(surfaces[0], control, {Parameterization(4).GetBfr(), 6, higherRates}, 101,
+                   kTolerance);
+}
+
+// A triangle has the sub-faces of Catmull-Clark, too.
+TEST(Rates, TrianglesHaveSubFaces) {
+    Shape const shape = MakeTorus(7, 6, TorusFaces::Triangles);
+    auto const refiner = CreateRefiner(shape, ReferenceMask::Smooth, 0, Sdc::Options());
+    SurfaceSet<double> const surfaces(*refiner, shape.positions);
+    std::vector<double> const control = gather(surfaces[0], shape.positions);
+    Bfr::Parameterization const subFaces(OpenSubdiv::Sdc::SCHEME_CATMARK, 3);
+    for (int const rate : {1, 2, 5, 6}) {
+        expectStencils(surfaces[0], control, {subFaces, rate});
+        expectStencils(surfaces[0], control, {Parameterization(3).GetBfr(), rate});
+    }
+}
+
+namespace {
+
+// On the lines from the centre of a quad or a triangle to its corners, coordinates have a bend.
+bool isOnLineToCorner(Bfr::Parameterization const &bfr, double const uv[2]) {
+    auto const areSame = [](double a, double b) { return std::abs(a - b) < 1e-9; };
+    double const rest = 1 - uv[0] - (bfr.GetFaceSize() == 3 ? uv[1] : 0);
+    return bfr.GetFaceSize() <= 4 && (areSame(uv[0], uv[1]) || areSame(uv[1], rest) ||
+                                      (bfr.GetFaceSize() == 3 && areSame(uv[0], rest)));
+}
+
+} // namespace
+
+TEST(Rates, DerivativesAreDifferences) {
+    constexpr double kStep = 1e-5;
+    Shape const quads = MakeTorus(7, 6, TorusFaces::Quads);
+    for (Shape const &shape :
+         {quads, MakeTorus(7, 6, TorusFaces::Triangles), MakeChamfered("chamfered", quads)}) {
+        auto const refiner = CreateRefiner(shape, ReferenceMask::Smooth, 0, Sdc::Options());
+        SurfaceSet<double> const surfaces(*refiner, shape.positions);
+        // Hexagons of a chamfered mesh come behind its faces.
+        int const face = shape.GetNumFaces() - 1;
+        Surface<double> const &surface = surfaces[face];
+        SCOPED_TRACE(testing::Message() << "face of " << surface.GetFaceSize());
+        Bfr::Parameterization const bfr = surface.GetParameterization().GetBfr();
+        std::vector<double> const control = gather(surface, shape.positions);
+        Bfr::Tessellation const tessellation(bfr, 7);
+        auto const numPlaces = std::size_t(tessellation.GetNumCoords());
+        std::vector<double> p(3 * numPlaces), du(3 * numPlaces), dv(3 * numPlaces);
+        surface.Evaluate(tessellation, control.data(), 3, p.data(), du.data(), dv.data(), 3);
+        std::vector<double> const coords = getCoords<double>(tessellation);
+        int numCompared = 0;
+        for (auto i = std::size_t(tessellation.GetNumBoundaryCoords()); i < numPlaces; ++i) {
+            if (isOnLineToCorner(bfr, &coords[2 * i])) {
+                continue;
+            }
+            for (std::size_t k = 0; k < 2; ++k) {
+                Vector3 ends[2];
+                for (std::size_t end = 0; end < 2; ++end) {
+                    double uv[2] = {coords[2 * i], coords[2 * i + 1]};
+                    uv[k] += end == 0 ? -kStep : kStep;
+                    Parameterization::ConvertFromBfr(bfr, uv, uv);
+                    surface.Evaluate(uv, control.data(), 3, ends[end].data());
+                }
+                Vector3 const difference = Scale(Subtract(ends[1], ends[0]), 0.5 / kStep);
+                Vector3 const derivative = ToVector(&(k == 0 ? du : dv)[3 * i]);
+                EXPECT_LT(GetDistance(difference, derivative), 2e-3 * GetLength(derivative));
+            }
+            ++numCompared;
+        }
+        EXPECT_GT(numCompared, tessellation.GetNumInteriorCoords() / 3);
+    }
+}
+
+TEST(Rates, WrongArgumentsWriteNothing) {
+    Shape const &shape = GetShape("cube");
+    auto const refiner = CreateRefiner(shape, ReferenceMask::Smooth, 0);
+    SurfaceSet<double> const surfaces(*refiner, shape.positions);
+    std::vector<double> const control = gather(surfaces[0], shape.positions);
+    int const rates[] = {1, 2, 0, 4};
+    double untouched = 77;
+    auto const expectNothing = [&](Surface<double> const &surface,
+                                   Bfr::Tessellation const &tessellation) {
+        surface.Evaluate(tessellation, control.data(), 3, &untouched, 3);
+        surface.Evaluate(tessellation, control.data(), 3, &untouched, &untouched, &untouched, 3);
+        EXPECT_EQ(untouched, 77);
+    };
+    Bfr::Parameterization const quad = surfaces[0].GetParameterization().GetBfr();
+    expectNothing(surfaces[0], {quad, 4, rates});
+    expectNothing(surfaces[0], {quad, 0});
+    expectNothing(surfaces[0], {Parameterization(3).GetBfr(), 2});
+    expectNothing(surfaces[0], {Parameterization(5).GetBfr(), 2});
+    expectNothing(surfaces[0], {Bfr::Parameterization(), 2});
+    expectNothing(Surface<double>(), {quad, 2});
+}
+
+TEST(Rates, ThreadsShareACache) {
+    constexpr int kNumThreads = 4;
+    Shape const shape = MakeTorus(9, 7, TorusFaces::IrregularTriangles);
+    auto const refiner = CreateRefiner(shape, ReferenceMask::Smooth, 0, Sdc::Options());
+    auto const evaluateAll = [&](SurfaceSet<float> const &surfaces,
+                                 std::vector<float> const &positions, int begin) {
+        std::vector<std::vector<float>> results(std::size_t(shape.GetNumFaces()));
+        for (int i = 0; i < shape.GetNumFaces(); ++i) {
+            int const face = (begin + i) % shape.GetNumFaces();
+            results[std::size_t(face)] = evaluate(surfaces[face], gather(surfaces[face], positions),
+                                                  {Parameterization(3).GetBfr(), 2 + face % 5});
+        }
+        return results;
+    };
+    std::vector<float> const positions(shape.positions.begin(), shape.positions.end());
+    SurfaceSet<float> const own(*refiner, positions);
+    auto const expected = evaluateAll(own, positions, 0);
+    SurfaceSet<float> const shared(*refiner, positions);
+    std::vector<std::vector<std::vector<float>>> results(kNumThreads);
+    std::vector<std::thread> threads;
+    for (int i = 0; i < kNumThreads; ++i) {
+        threads.emplace_back([&, i] {
+            results[std::size_t(i)] =
+                evaluateAll(shared, positions, i * shape.GetNumFaces() / kNumThreads);
+        });
+    }
+    for (std::thread &thread : threads) {
+        thread.join();
+    }
+    for (auto const &result : results) {
+        EXPECT_EQ(result, expected);
+    }
+}
+
+} // namespace OpenSubdivHex::Regression::ratesTest
