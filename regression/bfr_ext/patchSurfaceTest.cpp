@@ -105,10 +105,10 @@ void expectValues(FVarChannel const &channel, TopologyRefiner const &refiner,
         ASSERT_TRUE(factory.InitFaceVaryingSurface(map.GetFace(place.patch), &surface, number));
         double uv[2];
         map.GetFacePlace(place, &uv[0], &uv[1]);
-        std::vector<double> ofSurface(std::size_t(surface.GetNumControlPoints()));
-        surface.GatherControlPoints(&ofSurfaces[0].values[0], 1, ofSurface.data(), 1);
+        std::vector<double> stencil(std::size_t(surface.GetNumControlPoints()));
+        surface.EvaluateStencil(uv, stencil.data());
         double expected = 0;
-        surface.Evaluate(uv, ofSurface.data(), 1, &expected);
+        surface.ApplyStencilFromMesh(stencil.data(), &ofSurfaces[0].values[0], 1, &expected);
         double weights[20];
         auto const handle = PatchMap::GetHandle(place.patch);
         table.EvaluateBasisFaceVarying<double>(handle, place.s, place.t, weights, nullptr, nullptr,
