@@ -5,6 +5,8 @@
 #include "surfaceFixture.h"
 
 #include "bfr_ext/cell/facePatches.h"
+#include "bfr_ext/surfacePlaces.h"
+#include "far_ext/threads.h"
 
 #include "regression/shapes/featureShapes.h"
 #include "regression/shapes/torus.h"
@@ -388,6 +390,62 @@ TEST(SurfacePlaces, OfAnySizeAndStride) {
             EXPECT_TRUE(std::equal(first[1], first[1] + size, expected[1]));
         }
     }
+}
+
+// Any order of faces, some of which come several times and some never, and any threads.
+TEST(SurfacePlaces, OfManyFacesAreThoseOfEach) {
+    Shape const shape = MakeTorus(8, 6, TorusFaces::IrregularTriangles);
+    auto const refiner = CreateRefiner(shape, ReferenceMask::Smooth, 0, getOptions());
+    auto factory = SurfaceFactory::Create(*refiner);
+    constexpr int kNumPlaces = 500;
+    std::mt19937 random(3);
+    std::vector<int> faces;
+    std::vector<double> uvs;
+    for (Uv const &uv : findPlaces(BfrExt::Parameterization(3), kNumPlaces)) {
+        faces.push_back(int(random() % (unsigned(shape.GetNumFaces()) / 2)));
+        uvs.insert(uvs.end(), uv.begin(), uv.end());
+    }
+    std::vector<double> expected[3];
+    PlacedSurface surface;
+    for (std::size_t i = 0; i < std::size_t(kNumPlaces); ++i) {
+        ASSERT_TRUE(surface.Init(*factory, shape.positions, faces[i]));
+        std::array<Vector3, 6> const at = surface.Evaluate({uvs[2 * i], uvs[2 * i + 1]});
+        for (std::size_t k = 0; k < 3; ++k) {
+            expected[k].insert(expected[k].end(), at[k].begin(), at[k].end());
+        }
+    }
+    using Places = BfrExt::SurfacePlaces<double>;
+    auto const places = Places::Create(*factory, kNumPlaces, faces.data(), uvs.data());
+    ASSERT_TRUE(places);
+    EXPECT_EQ(places->GetNumPlaces(), kNumPlaces);
+    factory.reset();
+    for (int const numThreads : {1, 3}) {
+        FarExt::SetNumThreads(numThreads);
+        std::vector<double> results[3];
+        for (std::vector<double> &result : results) {
+            result.resize(3 * std::size_t(kNumPlaces));
+        }
+        places->Evaluate(shape.positions.data(), 3, results[0].data(), results[1].data(),
+                         results[2].data(), 3);
+        for (std::size_t k = 0; k < 3; ++k) {
+            EXPECT_EQ(results[k], expected[k]);
+        }
+        std::vector<double> alone(5 * std::size_t(kNumPlaces), 77);
+        places->Evaluate(shape.positions.data(), 3, alone.data(), {3, 5});
+        for (std::size_t i = 0; i < alone.size(); ++i) {
+            ASSERT_EQ(alone[i], i % 5 < 3 ? expected[0][i / 5 * 3 + i % 5] : 77);
+        }
+    }
+    FarExt::SetNumThreads(0);
+
+    auto const other = SurfaceFactory::Create(*refiner);
+    FarExt::CallStatus status;
+    EXPECT_EQ(Places::Create(*other, 0, nullptr, nullptr)->GetNumPlaces(), 0);
+    EXPECT_FALSE(Places::Create(*other, -1, nullptr, nullptr, &status));
+    EXPECT_EQ(status.GetCode(), FarExt::StatusCode::InvalidArgument);
+    faces[7] = shape.GetNumFaces();
+    EXPECT_FALSE(Places::Create(*other, kNumPlaces, faces.data(), uvs.data(), &status));
+    EXPECT_EQ(status.GetComponentIndex(), shape.GetNumFaces());
 }
 
 TEST(SurfacePlaces, OfInvalidSurfacesAndPlacesAreNone) {
