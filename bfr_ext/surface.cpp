@@ -227,10 +227,12 @@ void Surface<REAL>::Evaluate(OpenSubdiv::Bfr::Tessellation const &tessellation,
     }
     REAL *const results[3] = {p, du, dv};
     useBorder(controlPoints, pointDesc, [&](internal::BorderEvaluator<REAL> &border) {
-        internal::EvaluateRates(*_type, tessellation,
-                                {controlPoints, pointDesc.stride, std::size_t(pointDesc.size),
-                                 results, resultDesc.stride},
-                                border);
+        internal::RateEvaluator<REAL> evaluator(tessellation, border, results, resultDesc.stride);
+        if (internal::PlainFaceType const *const plain = _type.GetPlain()) {
+            evaluator.Evaluate(*plain);
+        } else {
+            evaluator.Evaluate(*_type, controlPoints, pointDesc.stride);
+        }
     });
 }
 

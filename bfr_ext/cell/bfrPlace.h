@@ -22,11 +22,11 @@ struct PlanePlace {
 /// sub-face, whose image is the kite of a corner, the centre of the face, and the middles of two edges between them.
 PlanePlace FindInPlane(Bfr::Parameterization const &parameterization, Pair const &uv);
 
-/// A place of a base face, given by (u, v) of one of Bfr's parameterizations of the face.
+/// A place of a base face, or of a child of it, given by (u, v) of one of Bfr's parameterizations of the face.
 struct BfrPlace {
     BasePoint point;
-    /// By coordinate of the plane, the derivatives of it by Bfr's u and v.
-    Pair toPlane[2];
+    /// By coordinate by which CellStencil finds derivatives, the derivatives of it by Bfr's u and v.
+    Pair toOwn[2];
 };
 
 /// \brief Finds a place inside of a face.
@@ -39,6 +39,9 @@ BfrPlace FindBfrPlace(Bfr::Parameterization const &parameterization, Pair const 
 ///
 /// The derivatives at the middle of an edge are those of the second sub-face, in which Bfr has it.
 BfrPlace MakeBfrEdgePlace(Bfr::Parameterization const &parameterization, int edge, int i, int n);
+
+/// The same place in the child that has it.
+BfrPlace MoveToChild(BfrPlace const &place, CellStep const &step, int faceSize);
 
 } // namespace OpenSubdivHex::BfrExt::internal
 

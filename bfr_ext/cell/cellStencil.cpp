@@ -148,6 +148,11 @@ CellStep FindCellStep(bool isWhole, int sector, Pair const &coords) {
     return {0, &kToFFace, true};
 }
 
+Pair CellStep::Apply(Pair const &coords) const {
+    Pair const ofChild = map->Apply(coords);
+    return isChildWhole ? clampToSector(ofChild) : clampToHalf(ofChild);
+}
+
 int FindCellCorner(int faceSize, int sector, Pair const &coords) {
     if (faceSize > 0) {
         return coords == Pair{1, 0} ? sector : coords == Pair{0, 1} ? (sector + 1) % faceSize : -1;
@@ -251,8 +256,7 @@ void CellStencil::takeStep(Place &place) {
     CellStep const step = FindCellStep(place.type->IsWhole(), place.sector, place.coords);
     CellMap const *const map = step.map;
     CellType::Child const &next = place.type->GetChildren()[step.child];
-    Pair const coords = map->Apply(place.coords);
-    place.coords = next.type->IsWhole() ? clampToSector(coords) : clampToHalf(coords);
+    place.coords = step.Apply(place.coords);
     Pair toCoords[2];
     for (std::size_t i = 0; i < 2; ++i) {
         for (std::size_t k = 0; k < 2; ++k) {

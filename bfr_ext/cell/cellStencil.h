@@ -29,6 +29,9 @@ BasePoint MakeBasePoint(int size, int sector, Pair const &coords);
 
 /// \brief Which child of a cell has a point, and how coordinates become those in the child.
 struct CellStep {
+    /// Coordinates in the child, which are inside.
+    Pair Apply(Pair const &coords) const;
+
     std::size_t child; ///< in the order of RefineCell()
     CellMap const *map;
     bool isChildWhole;

@@ -7,34 +7,95 @@
 
 #include <opensubdiv/bfr/tessellation.h>
 
+#include <vector>
+
 namespace OpenSubdivHex::BfrExt::internal {
 
-/// \brief Points of a base face, and where the points and derivatives go that are made of them.
-template <typename REAL>
-struct RateSums {
-    REAL const *points;
-    std::ptrdiff_t stride; ///< from one point to the next, in numbers
-    std::size_t size;      ///< of a point
-    REAL *const *results;  ///< points; derivatives by u and v, or two times null
-    std::ptrdiff_t resultStride;
+/// \brief The places inside of a face that a Bfr::Tessellation has.
+class BfrInnerPlaces {
+public:
+    explicit BfrInnerPlaces(Bfr::Tessellation const &tessellation);
+
+    std::size_t GetSize() const { return _size; }
+    /// By direction, the number of segments of a quad that has places inside; else 0.  With the number of places,
+    /// it tells all of them.
+    int GetRate(std::size_t direction) const { return _rates[direction]; }
+    /// Places [begin, end).
+    std::vector<BfrPlace> Find(std::size_t begin, std::size_t end);
+
+private:
+    Pair getCoord(std::size_t place) const;
+    void findCoords();
+
+    Bfr::Tessellation const &_tessellation;
+    std::size_t const _size;
+    int _rates[2] = {};
+    std::vector<double> _coords; // none until they are asked for
 };
 
-/// \brief Evaluates the places of a Bfr::Tessellation of a face, with rates of segments.
+/// \brief Evaluates a Bfr::Tessellation, with rates of segments, of a base face that a BorderEvaluator has.
 ///
-/// BorderEvaluator makes the points on the border.  All else has dense matrices, which the type of the face
-/// keeps: one of the places inside for each pair of inner rates, and of derivatives on an edge one for each
-/// rate.  So faces with other rates on their edges share that of the inside.  Matrices stand in blocks of places,
-/// and where there are many blocks, they are made each time and not kept.
-///
-/// \param border  has the face
+/// That makes the points on the border.  All else has dense matrices: of the places inside, one for each pair of
+/// inner rates, and of derivatives on an edge one for each rate.  So tessellations with other rates on the edges
+/// share that of the inside.  The type of the face keeps them, or of a plain face that is not in a lattice, those of
+/// its children, which are few.  Matrices stand in blocks of places, and where there are many blocks, they are
+/// made each time and not kept.
 template <typename REAL>
-void EvaluateRates(CellType const &type, Bfr::Tessellation const &tessellation,
-                   RateSums<REAL> const &sums, BorderEvaluator<REAL> &border);
+class RateEvaluator {
+public:
+    /// \param results  points; derivatives by u and v, or two times null
+    RateEvaluator(Bfr::Tessellation const &tessellation, BorderEvaluator<REAL> &border,
+                  REAL *const results[3], std::ptrdiff_t resultStride);
 
-extern template void EvaluateRates(CellType const &, Bfr::Tessellation const &,
-                                   RateSums<float> const &, BorderEvaluator<float> &);
-extern template void EvaluateRates(CellType const &, Bfr::Tessellation const &,
-                                   RateSums<double> const &, BorderEvaluator<double> &);
+    /// Evaluates a face with points \p stride numbers apart.
+    void Evaluate(CellType const &type, REAL const *points, std::ptrdiff_t stride);
+    /// Evaluates a plain one, of whose rings the border has the points.
+    void Evaluate(PlainFaceType const &type);
+
+private:
+    // What places are sums of: the points of a face, or the points of rings of which a child of it is made.
+    struct Source {
+        PatternTable &GetPatterns() const {
+            return cell ? cell->GetPatterns() : type.GetPatterns();
+        }
+
+        CellType const &type;
+        RingCell const *cell; // null: the face
+        std::size_t child;    // of the face
+        REAL const *points;
+        std::ptrdiff_t stride;
+        int const *indices; // by column, null: all in turn
+    };
+    // Of places, by row: of the points, or of the derivatives by u and v.
+    struct Matrices {
+        std::vector<PlaceMatrix<REAL>> matrices;
+        std::vector<PlaceRun> runs;
+    };
+
+    static Matrices makeMatrices(Source const &source, std::vector<BfrPlace> const &places,
+                                 bool hasDerivatives);
+    static Matrices makeInside(Source const &source, std::vector<BfrPlace> const &places,
+                               int faceSize, bool hasDerivatives);
+    void evaluateBorder();
+    void evaluate(Source const &source);
+    void evaluateInside(Source const &source, PatternOf of);
+    void evaluateDerivativesOnEdge(Source const &source, int edge);
+    void sumUp(Source const &source, Matrices const &matrices, std::size_t firstPlace) const;
+    REAL *getResult(std::size_t kind, int place) const {
+        return _results[kind] + std::ptrdiff_t(place) * _resultStride;
+    }
+
+    Bfr::Tessellation const &_tessellation;
+    BorderEvaluator<REAL> &_border;
+    REAL *const _results[3];
+    std::ptrdiff_t const _resultStride;
+    BfrInnerPlaces _inner;
+    std::vector<int> _firstPlaces; // by edge
+    std::vector<int> _indices;
+};
+
+extern template class RateEvaluator<float>;
+extern template class RateEvaluator<double>;
 
 } // namespace OpenSubdivHex::BfrExt::internal
 

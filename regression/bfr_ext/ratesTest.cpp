@@ -287,7 +287,7 @@ namespace {
 
 void expectStencils(Surface<double> const &surface, std::vector<double> const &control,
                     Bfr::Tessellation const &tessellation, std::size_t step = 1,
-                    double tolerance = 1e-6) {
+                    double tolerance = 1e-5) {
     auto const numPlaces = std::size_t(tessellation.GetNumCoords());
     constexpr std::size_t kStride = 5;
     std::vector<double> p(kStride * numPlaces), du(kStride * numPlaces), dv(kStride * numPlaces);

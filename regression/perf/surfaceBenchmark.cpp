@@ -4,6 +4,8 @@
 // tessellation of every face, without and with first derivatives, and per surface that is made, with
 // a cache that is empty or full; per point of surfaces that are made and evaluated for the first time; and per
 // place at random, and per face whose patch points are prepared for that.
+// tessellation of every face, of a level and of a rate, without and with first derivatives, and per surface that is
+// made, with a cache that is empty or full; and per point of surfaces that are made and evaluated for the first time.
 #include "makers.h"
 #include "suite.h"
 
@@ -27,6 +29,7 @@ namespace Bfr = OpenSubdiv::Bfr;
 
 constexpr int kLevel = 4;
 constexpr int kColdLevel = 3;
+constexpr int kRate = 8;
 
 using OwnSurface = BfrExt::Surface<float>;
 using PeerSurface = Bfr::Surface<float>;
@@ -72,9 +75,10 @@ struct Surfaces {
 using OwnSurfaces = Surfaces<BfrExt::SurfaceFactory, OwnSurface>;
 using PeerSurfaces = Surfaces<Bfr::RefinerSurfaceFactory<>, PeerSurface>;
 
-/// Evaluates a tessellation of each face.
-double evaluateOwn(OwnSurfaces const &own, BfrExt::LevelTessellation const &tessellation,
-                   bool hasDerivatives, Workspace &workspace) {
+/// Evaluates a tessellation of each face, of levels or of rates.
+template <class TESSELLATION>
+double evaluateOwn(OwnSurfaces const &own, TESSELLATION const &tessellation, bool hasDerivatives,
+                   Workspace &workspace) {
     for (OwnSurface const &surface : own.surfaces) {
         float *const gathered = workspace.gathered.data();
         surface.GatherControlPoints(workspace.positions.data(), 3, gathered, 3);
@@ -88,29 +92,41 @@ double evaluateOwn(OwnSurfaces const &own, BfrExt::LevelTessellation const &tess
     return double(own.surfaces.size()) * tessellation.GetNumCoords();
 }
 
-/// Evaluates about as many places of each face, all inside of it.
-double evaluatePeer(PeerSurfaces const &peer, int numPlaces, bool hasDerivatives,
-                    Workspace &workspace) {
-    int const numSteps = int(std::lround(std::sqrt(double(numPlaces))));
+/// Evaluates the places of each face at some (u, v).
+double evaluatePlaces(PeerSurfaces const &peer, std::vector<float> const &coords,
+                      bool hasDerivatives, Workspace &workspace) {
     for (PeerSurface const &surface : peer.surfaces) {
-        // A square in the corner of a triangle, or of the first sub-face of a larger face.
-        float const width = surface.GetFaceSize() == 4 ? 1.0F : 0.5F;
         float *const gathered = workspace.gathered.data();
         surface.PreparePatchPoints(workspace.positions.data(), 3, gathered, 3);
-        for (int i = 0; i < numSteps * numSteps; ++i) {
-            float const uv[2] = {width * (float(i % numSteps) + 0.5F) / float(numSteps),
-                                 width * (float(i / numSteps) + 0.5F) / float(numSteps)};
-            float *const p = workspace.results[0].data() + 3 * std::size_t(i);
+        float *results[3];
+        for (std::size_t i = 0; i < 3; ++i) {
+            results[i] = workspace.results[i].data();
+        }
+        for (std::size_t i = 0; i < coords.size(); i += 2) {
             if (hasDerivatives) {
-                surface.Evaluate(uv, gathered, 3, p,
-                                 workspace.results[1].data() + 3 * std::size_t(i),
-                                 workspace.results[2].data() + 3 * std::size_t(i));
+                surface.Evaluate(&coords[i], gathered, 3, results[0], results[1], results[2]);
             } else {
-                surface.Evaluate(uv, gathered, 3, p);
+                surface.Evaluate(&coords[i], gathered, 3, results[0]);
+            }
+            for (float *&result : results) {
+                result += 3;
             }
         }
     }
-    return double(peer.surfaces.size()) * numSteps * numSteps;
+    return double(peer.surfaces.size() * coords.size() / 2);
+}
+
+/// About so many places inside of a face.
+std::vector<float> makeCoords(PeerSurface const &surface, int numPlaces) {
+    // In a square in the corner of a triangle, or of the first sub-face of a larger face.
+    float const width = surface.GetFaceSize() == 4 ? 1.0F : 0.5F;
+    int const numSteps = int(std::lround(std::sqrt(double(numPlaces))));
+    std::vector<float> coords;
+    for (int i = 0; i < numSteps * numSteps; ++i) {
+        coords.push_back(width * (float(i % numSteps) + 0.5F) / float(numSteps));
+        coords.push_back(width * (float(i / numSteps) + 0.5F) / float(numSteps));
+    }
+    return coords;
 }
 
 /// The same with the stencils of one face, which all faces have where the mesh is regular.
@@ -128,17 +144,13 @@ double evaluateStencils(PeerSurfaces const &peer, std::vector<float> const &sten
     return double(peer.surfaces.size()) * double(stencils.size()) / double(numPoints);
 }
 
-/// Those of about so many places.
-std::vector<float> makeStencils(PeerSurfaces const &peer, int numPlaces) {
+/// Those of some places.
+std::vector<float> makeStencils(PeerSurfaces const &peer, std::vector<float> const &coords) {
     PeerSurface const &surface = peer.surfaces[0];
     auto const numPoints = std::size_t(surface.GetNumControlPoints());
-    float const width = surface.GetFaceSize() == 4 ? 1.0F : 0.5F;
-    int const numSteps = int(std::lround(std::sqrt(double(numPlaces))));
-    std::vector<float> stencils(numPoints * std::size_t(numSteps * numSteps));
-    for (int i = 0; i < numSteps * numSteps; ++i) {
-        float const uv[2] = {width * (float(i % numSteps) + 0.5F) / float(numSteps),
-                             width * (float(i / numSteps) + 0.5F) / float(numSteps)};
-        surface.EvaluateStencil(uv, &stencils[numPoints * std::size_t(i)]);
+    std::vector<float> stencils(numPoints * (coords.size() / 2));
+    for (std::size_t i = 0; i < coords.size(); i += 2) {
+        surface.EvaluateStencil(&coords[i], &stencils[numPoints * (i / 2)]);
     }
     for (PeerSurface const &other : peer.surfaces) {
         Require(other.GetNumControlPoints() == surface.GetNumControlPoints(), "irregular faces");
@@ -208,6 +220,8 @@ Contest makePointContest(BenchMesh const &mesh, bool isRegular) {
         Require(surface.GetFaceSize() == tessellation->GetFaceSize(), "faces of several sizes");
     }
     takeRoom(*own, *peer, numPlaces, *workspace);
+    auto const coords =
+        std::make_shared<std::vector<float>>(makeCoords(peer->surfaces[0], numPlaces));
     Contest contest;
     for (bool const hasDerivatives : {false, true}) {
         std::string const suffix = hasDerivatives ? ", derivatives" : "";
@@ -216,7 +230,7 @@ Contest makePointContest(BenchMesh const &mesh, bool isRegular) {
                 return evaluateOwn(*own, *tessellation, hasDerivatives, *workspace);
             }));
         contest.contestants.push_back(makePointContestant("Bfr::Surface" + suffix, workspace, [=] {
-            return evaluatePeer(*peer, numPlaces, hasDerivatives, *workspace);
+            return evaluatePlaces(*peer, *coords, hasDerivatives, *workspace);
         }));
     }
     auto const stream =
@@ -235,13 +249,44 @@ Contest makePointContest(BenchMesh const &mesh, bool isRegular) {
                         {"stream-1", 4, {1}},
                         {"stream-2", 5, {4}}};
     if (isRegular) {
-        auto const stencils = std::make_shared<std::vector<float>>(makeStencils(*peer, numPlaces));
+        auto const stencils = std::make_shared<std::vector<float>>(makeStencils(*peer, *coords));
         contest.contestants.push_back(
             makePointContestant("Bfr::Surface, stencils kept", workspace,
                                 [=] { return evaluateStencils(*peer, *stencils, *workspace); }));
         contest.pairings.push_back({"surface-stencils", 0, {6}});
         contest.pairings.push_back({"stream-stencils", 4, {6}});
     }
+    return contest;
+}
+
+/// The same tessellation, of a rate, for both.
+Contest makeRateContest(BenchMesh const &mesh, bool isRegular) {
+    auto const workspace = std::make_shared<Workspace>(mesh);
+    auto const own = std::make_shared<OwnSurfaces>();
+    auto const peer = std::make_shared<PeerSurfaces>();
+    own->factory = BfrExt::SurfaceFactory::Create(*workspace->refiner);
+    peer->factory = std::make_unique<Bfr::RefinerSurfaceFactory<>>(*workspace->peerRefiner);
+    own->Init(workspace->GetNumFaces());
+    peer->Init(workspace->GetNumFaces());
+    auto const tessellation =
+        std::make_shared<Bfr::Tessellation>(own->surfaces[0].GetParameterization().GetBfr(), kRate);
+    takeRoom(*own, *peer, tessellation->GetNumCoords(), *workspace);
+    auto const coords =
+        std::make_shared<std::vector<float>>(2 * std::size_t(tessellation->GetNumCoords()));
+    tessellation->GetCoords(coords->data());
+    Contest contest;
+    for (bool const hasDerivatives : {false, true}) {
+        std::string const suffix = hasDerivatives ? ", derivatives" : "";
+        contest.contestants.push_back(
+            makePointContestant("BfrExt::Surface" + suffix, workspace, [=] {
+                return evaluateOwn(*own, *tessellation, hasDerivatives, *workspace);
+            }));
+        contest.contestants.push_back(makePointContestant("Bfr::Surface" + suffix, workspace, [=] {
+            return evaluatePlaces(*peer, *coords, hasDerivatives, *workspace);
+        }));
+    }
+    std::string const row = isRegular ? "surface-rate" : "surface-rate-irregular";
+    contest.pairings = {{row, 0, {1}}, {row + "-derivatives", 2, {3}}};
     return contest;
 }
 
@@ -264,6 +309,8 @@ Contest makeColdContest(BenchMesh const &mesh) {
         own->surfaces[0].GetParameterization(), kColdLevel);
     int const numPlaces = tessellation->GetNumCoords();
     takeRoom(*own, *peer, numPlaces, *workspace);
+    auto const coords =
+        std::make_shared<std::vector<float>>(makeCoords(peer->surfaces[0], numPlaces));
     Contest contest;
     contest.contestants.push_back(makePointContestant("BfrExt::Surface, cold", workspace, [=] {
         initOwn();
@@ -271,7 +318,7 @@ Contest makeColdContest(BenchMesh const &mesh) {
     }));
     contest.contestants.push_back(makePointContestant("Bfr::Surface, cold", workspace, [=] {
         initPeer();
-        return evaluatePeer(*peer, numPlaces, false, *workspace);
+        return evaluatePlaces(*peer, *coords, false, *workspace);
     }));
     contest.pairings = {{"surface-evaluation-cold", 0, {1}}};
     return contest;
@@ -409,6 +456,8 @@ void AddSurfaceBenchmarks(Suite &suite) {
                          [=] { return makePointContest(mesh, isRegular); });
         suite.AddContest({"places of surfaces", "place", mesh, Memory::Resident},
                          [=] { return makePlacesContest(mesh); });
+        suite.AddContest({"surfaces, rate 8", "point", mesh, Memory::Resident},
+                         [=] { return makeRateContest(mesh, isRegular); });
         for (Memory memory : {Memory::Default, Memory::Warm}) {
             suite.AddContest({"making surfaces", "surface", mesh, memory},
                              [=] { return makeInitContest(mesh); });
