@@ -33,10 +33,7 @@ enum class PatternOf {
     ChildCorner,
     RingCell,
     RingItem,
-    CellBounds,
-    HeightBounds,
-    HeightFit,
-    TermIntervals,
+    SurfaceSamples,
     SlopeBounds,
     SecondDerivatives,
     PatchPoints
