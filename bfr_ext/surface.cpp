@@ -3,6 +3,7 @@
 
 #include "cell/borderEvaluator.h"
 #include "cell/cellPattern.h"
+#include "cell/facePatches.h"
 #include "cell/patchEvaluator.h"
 #include "cell/plainFace.h"
 #include "cell/rateEvaluator.h"
@@ -110,60 +111,59 @@ void Surface<REAL>::BoundControlPointsFromMesh(REAL const meshPoints[],
 }
 
 template <typename REAL>
-void Surface<REAL>::Evaluate(REAL const uv[2], REAL const controlPoints[],
-                             PointDescriptor const &pointDesc, REAL p[]) const {
-    if (!IsValid()) {
-        return;
-    }
-    internal::BasePoint const point = findPoint(uv);
-    if (evaluateOnBorder(point, controlPoints, pointDesc, p)) {
-        return;
-    }
-    CellStencil stencil(*_type);
-    stencil.Find(point, false);
-    sumUp(stencil.GetWeights().data(), GetNumControlPoints(), controlPoints, nullptr, pointDesc, p);
+int Surface<REAL>::GetNumPatchPoints() const {
+    return IsValid()
+               ? GetNumControlPoints() + internal::kNumPatchPoints *
+                                             internal::GetNumFacePatches(GetFaceSize(), _patchLevel)
+               : 0;
 }
 
 template <typename REAL>
-void Surface<REAL>::Evaluate(REAL const uv[2], REAL const controlPoints[],
+void Surface<REAL>::ComputePatchPoints(REAL patchPoints[],
+                                       PointDescriptor const &patchPointDesc) const {
+    if (!IsValid()) {
+        return;
+    }
+    REAL *const points =
+        patchPoints + std::ptrdiff_t(GetNumControlPoints()) * patchPointDesc.stride;
+    internal::MakeFacePatchPoints(_type, GetFaceSize(), _patchLevel, patchPoints,
+                                  patchPointDesc.size, patchPointDesc.stride, points);
+}
+
+template <typename REAL>
+void Surface<REAL>::evaluate(REAL const uv[2], int numDerivatives, REAL const patchPoints[],
+                             PointDescriptor const &pointDesc, REAL *const results[6]) const {
+    if (IsValid()) {
+        internal::EvaluatePatch(
+            internal::FindPatchPlace(
+                internal::FindBasePoint(GetFaceSize(), double(uv[0]), double(uv[1]), 0),
+                GetFaceSize(), _patchLevel, numDerivatives),
+            numDerivatives, patchPoints + std::ptrdiff_t(GetNumControlPoints()) * pointDesc.stride,
+            pointDesc.size, pointDesc.stride, results);
+    }
+}
+
+template <typename REAL>
+void Surface<REAL>::Evaluate(REAL const uv[2], REAL const patchPoints[],
+                             PointDescriptor const &pointDesc, REAL p[]) const {
+    REAL *const results[6] = {p};
+    evaluate(uv, 0, patchPoints, pointDesc, results);
+}
+
+template <typename REAL>
+void Surface<REAL>::Evaluate(REAL const uv[2], REAL const patchPoints[],
                              PointDescriptor const &pointDesc, REAL p[], REAL du[],
                              REAL dv[]) const {
-    if (!IsValid()) {
-        return;
-    }
-    internal::BasePoint const point = findPoint(uv);
-    CellStencil stencil(*_type);
-    stencil.Find(point, true);
-    int const size = GetNumControlPoints();
-    if (!evaluateOnBorder(point, controlPoints, pointDesc, p)) {
-        sumUp(stencil.GetWeights().data(), size, controlPoints, nullptr, pointDesc, p);
-    }
-    sumUp(stencil.GetDuWeights().data(), size, controlPoints, nullptr, pointDesc, du);
-    sumUp(stencil.GetDvWeights().data(), size, controlPoints, nullptr, pointDesc, dv);
+    REAL *const results[6] = {p, du, dv};
+    evaluate(uv, 1, patchPoints, pointDesc, results);
 }
 
 template <typename REAL>
-void Surface<REAL>::Evaluate(REAL const uv[2], REAL const controlPoints[],
+void Surface<REAL>::Evaluate(REAL const uv[2], REAL const patchPoints[],
                              PointDescriptor const &pointDesc, REAL p[], REAL du[], REAL dv[],
                              REAL duu[], REAL duv[], REAL dvv[]) const {
-    if (!IsValid()) {
-        return;
-    }
-    internal::BasePoint const point = findPoint(uv);
-    CellStencil stencil(*_type);
-    stencil.Find(point, true);
-    stencil.FindSecond(point);
-    auto const sum = [&](std::vector<double> const &weights, REAL *result) {
-        sumUp(weights.data(), GetNumControlPoints(), controlPoints, nullptr, pointDesc, result);
-    };
-    if (!evaluateOnBorder(point, controlPoints, pointDesc, p)) {
-        sum(stencil.GetWeights(), p);
-    }
-    sum(stencil.GetDuWeights(), du);
-    sum(stencil.GetDvWeights(), dv);
-    sum(stencil.GetDuuWeights(), duu);
-    sum(stencil.GetDuvWeights(), duv);
-    sum(stencil.GetDvvWeights(), dvv);
+    REAL *const results[6] = {p, du, dv, duu, duv, dvv};
+    evaluate(uv, 2, patchPoints, pointDesc, results);
 }
 
 template <typename REAL>
@@ -244,24 +244,6 @@ internal::BasePoint Surface<REAL>::findPoint(REAL const uv[2]) const {
     // Rounding of u and v matters more in larger polygons.
     double const tolerance = 2 * GetFaceSize() * double(std::numeric_limits<REAL>::epsilon());
     return internal::FindBasePoint(GetFaceSize(), double(uv[0]), double(uv[1]), tolerance);
-}
-
-template <typename REAL>
-bool Surface<REAL>::evaluateOnBorder(internal::BasePoint const &point, REAL const controlPoints[],
-                                     PointDescriptor const &pointDesc, REAL p[]) const {
-    if (!point.IsOnBorder()) {
-        return false;
-    }
-    auto const sector = std::size_t(point.sector);
-    auto const numEdges = std::size_t(GetFaceSize());
-    useBorder(controlPoints, pointDesc, [&](internal::BorderEvaluator<REAL> &border) {
-        if (point.coords[1] == 0 || point.coords[0] == 0) {
-            border.EvaluateVertex(point.coords[1] == 0 ? sector : (sector + 1) % numEdges, p);
-        } else {
-            border.EvaluatePoint(sector, point.coords, p);
-        }
-    });
-    return true;
 }
 
 // Calls function(evaluator) for the border of the face.

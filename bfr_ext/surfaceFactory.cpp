@@ -2,6 +2,7 @@
 #include "surfaceFactory.h"
 
 #include "cell/cellType.h"
+#include "cell/facePatches.h"
 #include "cell/keptFaces.h"
 #include "cell/plainFace.h"
 
@@ -85,6 +86,11 @@ void SurfaceFactory::setTypes() {
 }
 
 SurfaceFactory::~SurfaceFactory() = default;
+
+int SurfaceFactory::getPatchLevel() const {
+    return std::clamp(_options.GetApproxLevelSmooth(), internal::kFirstPatchLevel,
+                      internal::kLastPatchLevel);
+}
 
 std::unique_ptr<SurfaceFactory> SurfaceFactory::Create(FarExt::TopologyRefiner const &refiner,
                                                        Options options, CallStatus *status) {
@@ -249,7 +255,7 @@ CallStatus SurfaceFactory::init(Index face, Interpolation interpolation, int cha
     }
     int const size = level.GetFaceSize(levelFace);
     int const numPoints = int(points.size()) - 2 * size;
-    surface.set(_owner, type, size, numPoints, nullptr);
+    surface.set(_owner, type, size, getPatchLevel(), numPoints, nullptr);
     // Vertices of the value mesh of a later level are its values.
     if (values && depth == 0) {
         std::for_each_n(points.begin(), numPoints,
@@ -271,7 +277,8 @@ CallStatus SurfaceFactory::initKept(Index face, Interpolation interpolation, int
         kept = _kept->Add(kind, face, surface._type, surface.GetFaceSize(), surface._ownPoints);
     }
     if (kept) {
-        surface.set(_owner, kept->type, kept->size, kept->numPoints, kept->GetPoints());
+        surface.set(_owner, kept->type, kept->size, getPatchLevel(), kept->numPoints,
+                    kept->GetPoints());
     }
     return CallStatus();
 }

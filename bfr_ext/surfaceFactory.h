@@ -75,6 +75,15 @@ public:
         /// That cache.
         SurfaceFactoryCache *GetExternalCache() const { return _externalCache; }
 
+        /// Sets the level whose cells are the patches that places of surfaces are evaluated by, 2 to 6: each
+        /// level has four times the patches, and about an eighth of the error.
+        Options &SetApproxLevelSmooth(int level) {
+            _approxLevelSmooth = level;
+            return *this;
+        }
+        /// That level; by default 3.
+        int GetApproxLevelSmooth() const { return _approxLevelSmooth; }
+
         /// Sets the memory, in bytes, for what surfaces are made of, which is kept as long as the factory and
         /// surfaces that it made.  What there is no memory for is found again for each surface.
         Options &SetMemoryOfFaces(std::size_t memory) {
@@ -87,6 +96,7 @@ public:
     private:
         FVarID _defaultFVarID = 0;
         SurfaceFactoryCache *_externalCache = nullptr;
+        int _approxLevelSmooth = 3;
         std::size_t _memoryOfFaces = std::size_t(64) << 20;
     };
 
@@ -216,6 +226,7 @@ private:
     SurfaceFactory(SurfaceFactory const &other, Options options);
 
     void setTypes();
+    int getPatchLevel() const;
     bool hasRefinedAgain() const;
     FarExt::CallStatus checkIsFace(Index face) const;
     FarExt::CallStatus checkFace(Index face) const;

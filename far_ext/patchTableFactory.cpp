@@ -6,6 +6,8 @@
 #include "far_ext/patch/varyingPoints.h"
 #include "far_ext/vtr/buffer.h"
 
+#include <algorithm>
+#include <iterator>
 #include <limits>
 #include <numeric>
 #include <string>
@@ -102,28 +104,107 @@ std::vector<Far::PatchParam> makeParams(internal::MeshLevels const &mesh,
     return params;
 }
 
+std::unique_ptr<Far::StencilTable const> makeTable(LocalPoints points) {
+    return std::make_unique<FilledStencilTable const>(
+        points.numControlPoints, std::move(points.sizes), std::move(points.indices),
+        std::move(points.weights));
+}
+
+// The channels that are asked for.
+CallStatus findChannels(TopologyRefiner const &refiner, PatchTableFactory::Options const &options,
+                        std::vector<int> &channels) {
+    if (!options.generateFVarTables) {
+        return CallStatus();
+    }
+    int const numChannels = refiner.GetNumFVarChannels();
+    if (options.numFVarChannels < 0) {
+        channels.resize(std::size_t(numChannels));
+        std::iota(channels.begin(), channels.end(), 0);
+        return CallStatus();
+    }
+    if (options.numFVarChannels > 0 && !options.fvarChannelIndices) {
+        return internal::Failure(StatusCode::InvalidArgument,
+                                 "there are numFVarChannels without fvarChannelIndices");
+    }
+    for (int i = 0; i < options.numFVarChannels; ++i) {
+        int const channel = options.fvarChannelIndices[i];
+        if (CallStatus result = internal::CheckChannel(channel, numChannels); !result.IsOk()) {
+            return result;
+        }
+        channels.push_back(channel);
+    }
+    return CallStatus();
+}
+
+// \p cells are those of the mesh.
+CallStatus makeChannel(TopologyRefiner const &refiner, PatchTableFactory::Options const &options,
+                       internal::PatchCells const &cells, int channel,
+                       internal::PatchTableContent::Channel &result) {
+    internal::Hierarchy const &hierarchy = refiner.GetHierarchy();
+    std::vector<Index> patches;
+    internal::PatchCells const ofValues(hierarchy.channels[std::size_t(channel)], hierarchy.mesh,
+                                        cells, patches);
+    int const numValues = hierarchy.GetNumControlPoints(channel);
+    auto const setValues = [&](std::vector<Index> const &points) {
+        std::size_t const numOfPatch = points.size() / patches.size();
+        result.values.reserve(points.size());
+        for (Index const patch : patches) {
+            auto const first = points.begin() + std::ptrdiff_t(numOfPatch) * patch;
+            std::transform(first, first + std::ptrdiff_t(numOfPatch),
+                           std::back_inserter(result.values),
+                           [&](Index point) { return numValues + point; });
+        }
+    };
+    result.isLinear = options.generateFVarLegacyLinearPatches ||
+                      refiner.GetFVarLinearInterpolation(channel) == Sdc::Options::FVAR_LINEAR_ALL;
+    if (result.isLinear) {
+        internal::VaryingPoints const points(refiner, channel, ofValues);
+        setValues(points.GetPatchPoints());
+        return makeLocalPoints(options.fvarPatchPrecisionDouble, points, numValues, result.points);
+    }
+    internal::PatchBuilder builder(hierarchy, channel, refiner.GetSchemeOptions(),
+                                   refiner.GetHexSchemeOptions(), ofValues);
+    if (CallStatus status = builder.Build(); !status.IsOk()) {
+        return status;
+    }
+    setValues(builder.GetPatchPoints());
+    return makeLocalPoints(options.fvarPatchPrecisionDouble, builder, numValues, result.points);
+}
+
 } // namespace
 
 std::unique_ptr<Far::PatchTable const>
 PatchTableFactory::Create(TopologyRefiner const &refiner, Options options, CallStatus *status) {
     std::optional<internal::PatchCells> cells;
-    if (!internal::Report(internal::FindPatchCells(refiner, options, cells), status)) {
+    std::vector<int> channels;
+    CallStatus checked = findChannels(refiner, options, channels);
+    if (checked.IsOk()) {
+        checked = internal::FindPatchCells(refiner, options, cells);
+    }
+    if (!internal::Report(checked, status)) {
         return nullptr;
     }
     internal::Hierarchy const &hierarchy = refiner.GetHierarchy();
     int const numControlVerts = refiner.GetLevel(0).GetNumVertices();
     internal::PatchTableContent content;
     content.isDouble = options.patchPrecisionDouble;
-    internal::PatchBuilder builder(hierarchy, refiner.GetSchemeOptions(),
+    internal::PatchBuilder builder(hierarchy, -1, refiner.GetSchemeOptions(),
                                    refiner.GetHexSchemeOptions(), *cells);
     CallStatus result = builder.Build();
     if (result.IsOk()) {
         result = makeLocalPoints(content.isDouble, builder, numControlVerts, content.points);
     }
     if (result.IsOk() && options.generateVaryingTables) {
-        internal::VaryingPoints const points(refiner, *cells);
+        internal::VaryingPoints const points(refiner, -1, *cells);
         content.varyingVertices = shift(points.GetPatchPoints(), numControlVerts);
         result = makeLocalPoints(content.isDouble, points, numControlVerts, content.varyingPoints);
+    }
+    content.isFVarDouble = options.fvarPatchPrecisionDouble;
+    for (int const channel : channels) {
+        if (result.IsOk()) {
+            content.channels.emplace_back();
+            result = makeChannel(refiner, options, *cells, channel, content.channels.back());
+        }
     }
     if (!internal::Report(result, status)) {
         return nullptr;
@@ -146,19 +227,29 @@ PatchTableFactory::CreateLocalPointStencilTable(TopologyRefiner const &refiner, 
     if (!internal::Report(internal::FindPatchCells(refiner, options, cells), status)) {
         return nullptr;
     }
-    internal::PatchBuilder builder(refiner.GetHierarchy(), refiner.GetSchemeOptions(),
+    internal::PatchBuilder builder(refiner.GetHierarchy(), -1, refiner.GetSchemeOptions(),
                                    refiner.GetHexSchemeOptions(), *cells);
     CallStatus result = builder.Build();
-    PointStencils<float> stencils;
+    LocalPoints points;
     if (result.IsOk()) {
-        result = builder.MakeStencils(stencils);
+        result = makeLocalPoints(false, builder, refiner.GetLevel(0).GetNumVertices(), points);
     }
-    if (!internal::Report(result, status)) {
-        return nullptr;
+    return internal::Report(result, status) ? makeTable(std::move(points)) : nullptr;
+}
+
+std::unique_ptr<Far::StencilTable const> PatchTableFactory::CreateLocalPointFaceVaryingStencilTable(
+    TopologyRefiner const &refiner, Options options, int channel, CallStatus *status) {
+    std::optional<internal::PatchCells> cells;
+    CallStatus result = internal::CheckChannel(channel, refiner.GetNumFVarChannels());
+    if (result.IsOk()) {
+        result = internal::FindPatchCells(refiner, options, cells);
     }
-    return std::make_unique<FilledStencilTable const>(
-        refiner.GetLevel(0).GetNumVertices(), std::move(stencils.sizes),
-        std::move(stencils.indices), std::move(stencils.weights));
+    internal::PatchTableContent::Channel content;
+    if (result.IsOk()) {
+        options.fvarPatchPrecisionDouble = false;
+        result = makeChannel(refiner, options, *cells, channel, content);
+    }
+    return internal::Report(result, status) ? makeTable(std::move(content.points)) : nullptr;
 }
 
 std::unique_ptr<Far::StencilTable const> PatchTableFactory::AppendLocalPointStencilTable(

@@ -30,6 +30,13 @@ namespace OpenSubdivHex::FarExt {
 /// vertices lie between, as with AppendLocalPointStencilTable(), evaluators are given a descriptor whose
 /// offset is larger by as many elements.
 ///
+/// **Face-varying channels** have a patch for each patch of the surface, with the same s and t: bilinear ones (QUADS)
+/// or Gregory patches of the channel's values.  These are the limit of the channel as those of the surface are of
+/// its vertices: what is a seam is a boundary to both sides.  Their points are local ones, too: indices count
+/// the values of level 0 first, then come the points of CreateLocalPointFaceVaryingStencilTable().  The table has
+/// those of Gregory patches (Far::PatchTable::GetLocalPointFaceVaryingStencilTable()); of QUADS no
+/// Far::PatchTable has any.
+///
 /// **Parameters.** Each patch is a face of its own, with the index of the patch, in the terms of
 /// Far::PatchParam and Far::PatchMap: s and t are those of the patch, from 0 to 1.
 ///
@@ -69,10 +76,26 @@ public:
         /// Whether the stencils of points, of varying ones too, are of type double; else float.
         bool patchPrecisionDouble = false;
 
+        /// Whether there are patches of face-varying channels.
+        bool generateFVarTables = false;
+        /// \brief Whether the patches of all channels are QUADS of the values of the levels; else those of
+        /// channels with FVAR_LINEAR_ALL alone, and of others patches as the surface's.
+        bool generateFVarLegacyLinearPatches = true;
+        int numFVarChannels = -1; ///< of fvarChannelIndices; -1: all channels of the mesh
+        int const *fvarChannelIndices =
+            nullptr; ///< the channels of the table, which are 0, 1 ... there
+        /// Whether the stencils of face-varying points are of type double; else float.
+        bool fvarPatchPrecisionDouble = false;
+
         /// Sets patchPrecisionDouble, for float or double.
         template <typename REAL>
         void SetPatchPrecision() {
             patchPrecisionDouble = sizeof(REAL) == sizeof(double);
+        }
+        /// Sets fvarPatchPrecisionDouble, likewise.
+        template <typename REAL>
+        void SetFVarPatchPrecision() {
+            fvarPatchPrecisionDouble = sizeof(REAL) == sizeof(double);
         }
 
         /// \brief How the refiner is refined for these patches: by a level more than they are of, since
@@ -89,7 +112,7 @@ public:
     /// Weights of a local point sum to 1; some are negative.  The same bits for any number of threads.
     ///
     /// \return  null on failure: InvalidArgument (a level out of range or without full topology: see
-    ///          GetRefineUniformOptions(); a tolerance that is negative or no number, or without positions), Unsupported (a level that is not refined by hexagonal steps; a
+    ///          GetRefineUniformOptions(); a channel that the mesh has not; a tolerance that is negative or no number, or without positions), Unsupported (a level that is not refined by hexagonal steps; a
     ///          boundary that follows the paper's rule, VTX_BOUNDARY_NONE, whose edge is named; what has
     ///          no limit: see LimitStencilTableFactory; a mesh of holes alone), or TooLarge (more than 2^28 - 1 patches, or
     ///          2^31 - 1 weights of points).
@@ -104,8 +127,16 @@ public:
     CreateLocalPointStencilTable(TopologyRefiner const &refiner, Options options,
                                  CallStatus *status = nullptr);
 
+    /// \brief The stencils of the points of a face-varying channel of the mesh, as its patches have them.
+    ///
+    /// \return  null on failure, as Create(); InvalidArgument for a channel that the mesh has not
+    static std::unique_ptr<Far::StencilTable const>
+    CreateLocalPointFaceVaryingStencilTable(TopologyRefiner const &refiner, Options options,
+                                            int channel = 0, CallStatus *status = nullptr);
+
     /// \brief Joins the stencils of \p base, as StencilTableFactory makes them, and those of local points,
-    /// in this order: as Far::StencilTableFactory::AppendLocalPointStencilTable().
+    /// in this order: as Far::StencilTableFactory::AppendLocalPointStencilTable().  The same for varying and
+    /// face-varying points.
     ///
     /// \return  null on failure: InvalidArgument (a null pointer, or tables of different numbers of control
     ///          vertices) or TooLarge (more than 2^31 - 1 weights)

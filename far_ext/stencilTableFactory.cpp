@@ -3,7 +3,6 @@
 
 #include "far_ext/stencil/stencilMultiplier.h"
 #include "far_ext/stencil/stencilTableSize.h"
-#include "far_ext/stencil/symbolicTable.h"
 
 #include <algorithm>
 #include <numeric>
@@ -54,23 +53,15 @@ public:
 
     void Fill() {
         fillControlRows();
-        SpareStencils<REAL> pSpare;
-        StencilPlaces<REAL> pPlaces{};
-        for (int level = _plan.firstBuilt; level <= _plan.lastLevel; ++level) {
-            bool const isStored = level >= _plan.firstStored;
-            SpareStencils<REAL> spare;
-            StencilPlaces<REAL> const places =
-                !isStored ? spare.Place(_symbolic.GetSupports(level).OfVertices())
-                : _kept   ? placeKept(level, spare)
-                          : placeAll(level);
-            internal::StencilMultiplier<REAL>(
-                _symbolic.GetRows(level), _symbolic.GetParentSupports(level),
-                _symbolic.GetSupports(level), _plan.HasParentStencils(level) ? &pPlaces : nullptr,
-                places)
-                .Fill(_symbolic.GetNumSources(level));
-            pPlaces = places;
-            pSpare = std::move(spare);
-        }
+        SpareStencils<REAL> spares[2]; // of the level before, too
+        internal::FillStencils<REAL>(_symbolic, [&](int level) {
+            SpareStencils<REAL> &spare = spares[level % 2];
+            spare = SpareStencils<REAL>();
+            return level < _plan.firstStored
+                       ? spare.Place(_symbolic.GetSupports(level).OfVertices())
+                   : _kept ? placeKept(level, spare)
+                           : placeAll(level);
+        });
     }
 
 private:

@@ -161,10 +161,10 @@ RefinementEvaluator::Impl::Impl(TopologyRefiner const &topologyRefiner, Options 
             tileMap.Refine(*refinements[level - 1], level > 1 ? refinements[level - 2] : nullptr);
         }
         refinements.push_back(&mesh.refinements[level]);
-        std::shared_ptr<FarExt::internal::RefinementRules const> const rules =
-            FarExt::internal::GetRules(mesh.levels[level], refiner.GetHexSchemeOptions(),
-                                       interpolation);
-        internal::PrepareRefinement(*rules, refinements, tileMap, _refinements[level]);
+        internal::PrepareRefinement(FarExt::internal::GetRules(mesh.levels[level],
+                                                               refiner.GetHexSchemeOptions(),
+                                                               interpolation),
+                                    refinements, tileMap, _refinements[level]);
     }
     for (int level = 0; level <= maxLevel; ++level) {
         numElements.push_back(mesh.levels[std::size_t(level)].numVertices);

@@ -28,18 +28,35 @@ struct PatchTable {
     std::unique_ptr<Osd::CpuPatchTable const> evaluated;
     std::unique_ptr<PatchMap const> map;
     StencilTable localPoints;
+    std::vector<StencilTable> ofChannels;
 
     int GetNumPatches() const { return map->GetNumPatches(); }
     int GetNumControlVertices() const { return localPoints.numSources; }
     int GetNumLocalPoints() const { return table->GetNumLocalPoints(); }
-    int GetNumPoints() const { return GetNumControlVertices() + GetNumLocalPoints(); }
+    int GetNumFVarChannels() const { return int(ofChannels.size()); }
+    StencilTable const &GetLocalPoints(int channel) const {
+        CheckIndex(channel, GetNumFVarChannels(), "channel");
+        return ofChannels[std::size_t(channel)];
+    }
 };
 
-PatchTable createTable(Refiner const &refiner, int isolationLevel) {
+Far::StencilTableReal<float> const &getStencils(StencilTable const &points) {
+    return *std::get<StencilTable::Pointer<float>>(points.table);
+}
+
+/// The control points, or values, and the local points.
+int getNumPoints(StencilTable const &points) {
+    return points.numSources + getStencils(points).GetNumStencils();
+}
+
+PatchTable createTable(Refiner const &refiner, int isolationLevel, bool generateFVarTables,
+                       bool generateFVarLegacyLinearPatches) {
     PatchTable made;
     FarExt::CallStatus status;
     refiner.Read([&](FarExt::TopologyRefiner const &topology) {
-        PatchTableFactory::Options const options(isolationLevel);
+        PatchTableFactory::Options options(isolationLevel);
+        options.generateFVarTables = generateFVarTables;
+        options.generateFVarLegacyLinearPatches = generateFVarLegacyLinearPatches;
         made.table = PatchTableFactory::Create(topology, options, &status);
         if (!made.table) {
             return;
@@ -48,6 +65,21 @@ PatchTable createTable(Refiner const &refiner, int isolationLevel) {
         made.localPoints.table =
             StencilTable::Pointer<float>(made.table, made.table->GetLocalPointStencilTable());
         made.localPoints.numSources = topology.GetLevel(0).GetNumVertices();
+        for (int channel = 0; channel < made.table->GetNumFVarChannels(); ++channel) {
+            StencilTable &ofChannel = made.ofChannels.emplace_back();
+            ofChannel.numSources = topology.GetLevel(0).GetNumFVarValues(channel);
+            if (auto const *known = made.table->GetLocalPointFaceVaryingStencilTable(channel)) {
+                ofChannel.table = StencilTable::Pointer<float>(made.table, known);
+                continue;
+            }
+            // Far's tables have none of linear channels.
+            ofChannel.table = StencilTable::Pointer<float>(
+                PatchTableFactory::CreateLocalPointFaceVaryingStencilTable(topology, options,
+                                                                           channel, &status));
+            if (!status.IsOk()) {
+                return;
+            }
+        }
         made.map = std::make_unique<PatchMap>(topology, options, &status);
         made.evaluated = std::make_unique<Osd::CpuPatchTable>(made.table.get());
     });
@@ -55,11 +87,11 @@ PatchTable createTable(Refiner const &refiner, int isolationLevel) {
     return made;
 }
 
-py::array_t<float> makePoints(PatchTable const &self, py::object const &values) {
-    int const numControl = self.GetNumControlVertices();
+py::array_t<float> makePoints(StencilTable const &localPoints, py::object const &values) {
+    int const numControl = localPoints.numSources;
     auto const source = TakeSource<float>(values, "values", numControl);
     auto const width = py::ssize_t(source.desc.length);
-    py::array_t<float> points({py::ssize_t(self.GetNumPoints()), width});
+    py::array_t<float> points({py::ssize_t(getNumPoints(localPoints)), width});
     float *const data = points.mutable_data();
     py::gil_scoped_release const release;
     for (int i = 0; i < numControl; ++i) {
@@ -67,7 +99,7 @@ py::array_t<float> makePoints(PatchTable const &self, py::object const &values) 
     }
     Osd::BufferDescriptor const control(0, int(width), int(width));
     Osd::BufferDescriptor const local(int(width) * numControl, int(width), int(width));
-    auto const &stencils = *std::get<StencilTable::Pointer<float>>(self.localPoints.table);
+    Far::StencilTableReal<float> const &stencils = getStencils(localPoints);
     OsdExt::OmpEvaluator::EvalStencils(data, control, data, local, stencils.GetSizes().data(),
                                        stencils.GetOffsets().data(),
                                        stencils.GetControlIndices().data(),
@@ -94,11 +126,15 @@ std::vector<Osd::PatchCoord> takePlaces(PatchTable const &self, py::object const
     return places;
 }
 
-/// Points, and derivatives behind them: \p numOutputs arrays.
+/// Points, and derivatives behind them: \p numOutputs arrays; values of a \p channel of 0 or more.
 py::object evaluate(PatchTable const &self, py::object const &patches, py::object const &st,
-                    py::object const &points, int numOutputs) {
+                    py::object const &points, int numOutputs, int channel = -1) {
+    StencilTable const &localPoints =
+        channel < 0 ? self.localPoints : self.ofChannels[std::size_t(channel)];
     std::vector<Osd::PatchCoord> const places = takePlaces(self, patches, st);
-    auto const source = TakeSource<float>(points, "points", self.GetNumPoints());
+    auto const source = TakeSource<float>(points, "points", getNumPoints(localPoints));
+    Osd::CpuPatchTable const &table = *self.evaluated;
+    bool const isOfChannel = channel >= 0;
     constexpr int kMaxOutputs = 6;
     py::tuple result(numOutputs);
     float *outputs[kMaxOutputs] = {};
@@ -114,8 +150,9 @@ py::object evaluate(PatchTable const &self, py::object const &patches, py::objec
         OsdExt::OmpEvaluator::EvalPatches(
             source.data, source.desc, outputs[0], desc, outputs[1], desc, outputs[2], desc,
             outputs[3], desc, outputs[4], desc, outputs[5], desc, int(places.size()), places.data(),
-            self.evaluated->GetPatchArrayBuffer(), self.evaluated->GetPatchIndexBuffer(),
-            self.evaluated->GetPatchParamBuffer());
+            isOfChannel ? table.GetFVarPatchArrayBuffer(channel) : table.GetPatchArrayBuffer(),
+            isOfChannel ? table.GetFVarPatchIndexBuffer(channel) : table.GetPatchIndexBuffer(),
+            isOfChannel ? table.GetFVarPatchParamBuffer(channel) : table.GetPatchParamBuffer());
     }
     return numOutputs == 1 ? py::object(result[0]) : py::object(result);
 }
@@ -170,16 +207,23 @@ py::array_t<double> listCoords(PatchTable const &self) {
 void BindPatches(py::module_ &module) {
     py::class_<PatchTable>(
         module, "PatchTable",
-        "PatchTable(refiner, isolation_level)\n\n"
+        "PatchTable(refiner, isolation_level, *, generate_fvar_tables=False,\n"
+        "           generate_fvar_legacy_linear_patches=True)\n\n"
         "The limit surface as bicubic Gregory patches, as FarExt::PatchTableFactory makes them: "
         "those of\nthe faces of a level.\n\n"
         "Args:\n"
         "    isolation_level: that of the surface or more, and less than the refiner's max_level, "
         "which\n"
         "        needs full topology: refine_uniform(isolation_level + 1,\n"
-        "        full_topology_in_last_level=True)\n\n"
+        "        full_topology_in_last_level=True)\n"
+        "    generate_fvar_tables: whether there are patches of the face-varying channels, too\n"
+        "    generate_fvar_legacy_linear_patches: whether all of these are bilinear; else those "
+        "of\n"
+        "        linear channels alone\n\n"
         "Nothing refers to the refiner afterwards.  Raises StatusError.")
-        .def(py::init(&createTable), py::arg("refiner"), py::arg("isolation_level"))
+        .def(py::init(&createTable), py::arg("refiner"), py::arg("isolation_level"), py::kw_only(),
+             py::arg("generate_fvar_tables") = false,
+             py::arg("generate_fvar_legacy_linear_patches") = true)
         .def_property_readonly("num_patches", &PatchTable::GetNumPatches)
         .def_property_readonly("num_control_vertices", &PatchTable::GetNumControlVertices)
         .def_property_readonly("num_local_points", &PatchTable::GetNumLocalPoints)
@@ -210,12 +254,62 @@ void BindPatches(py::module_ &module) {
         .def_property_readonly(
             "coords", &listCoords,
             "float64, shape (patches, 4, 2): u and v of the four corners of each in its face.")
-        .def("make_points", &makePoints,
-             "make_points(values)\n\n"
-             "The points of patches: float32, shape (control vertices + local points, width).\n\n"
-             "Args:\n"
-             "    values: of the control vertices, shape (control vertices, width)",
-             py::arg("values"))
+        .def_property_readonly("num_fvar_channels", &PatchTable::GetNumFVarChannels,
+                               "Those that have patches.")
+        .def(
+            "local_point_fvar_stencil_table",
+            [](PatchTable const &self, int channel) { return self.GetLocalPoints(channel); },
+            "local_point_fvar_stencil_table(channel=0)\n\n"
+            "StencilTable: the local points of a channel in terms of its values.",
+            py::arg("channel") = 0)
+        .def(
+            "patch_fvar_values",
+            [](py::object const &self, int channel) {
+                auto const &table = self.cast<PatchTable const &>();
+                table.GetLocalPoints(channel); // or it is out of range
+                return View(table.evaluated->GetFVarPatchIndexBuffer(channel),
+                            {py::ssize_t(table.GetNumPatches()),
+                             py::ssize_t(table.table->GetFVarValueStride(channel))},
+                            self);
+            },
+            "patch_fvar_values(channel=0)\n\n"
+            "int32, shape (patches, 20) or, of bilinear ones, (patches, 4), a view: the points of "
+            "each, of\nmake_fvar_points().",
+            py::arg("channel") = 0)
+        .def(
+            "make_fvar_points",
+            [](PatchTable const &self, py::object const &values, int channel) {
+                return makePoints(self.GetLocalPoints(channel), values);
+            },
+            "make_fvar_points(values, channel=0)\n\n"
+            "The points of the patches of a channel: float32, shape (values + local points, "
+            "width).\n\n"
+            "Args:\n"
+            "    values: of level 0, shape (values, width)",
+            py::arg("values"), py::arg("channel") = 0)
+        .def(
+            "evaluate_fvar",
+            [](PatchTable const &self, py::object const &patches, py::object const &st,
+               py::object const &points, int channel) {
+                self.GetLocalPoints(channel); // or it is out of range
+                return evaluate(self, patches, st, points, 1, channel);
+            },
+            "evaluate_fvar(patches, st, points, channel=0)\n\n"
+            "The values of a channel at places of patches: float32, shape (n, width).\n\n"
+            "Args:\n"
+            "    patches, st: as of evaluate()\n"
+            "    points: those of make_fvar_points()",
+            py::arg("patches"), py::arg("st"), py::arg("points"), py::arg("channel") = 0)
+        .def(
+            "make_points",
+            [](PatchTable const &self, py::object const &values) {
+                return makePoints(self.localPoints, values);
+            },
+            "make_points(values)\n\n"
+            "The points of patches: float32, shape (control vertices + local points, width).\n\n"
+            "Args:\n"
+            "    values: of the control vertices, shape (control vertices, width)",
+            py::arg("values"))
         .def("find_places", &findPlaces,
              "find_places(faces, uv)\n\n"
              "The patches that have places of faces of the surface level: a tuple of int32, shape "

@@ -172,7 +172,7 @@ private:
     std::vector<py::object> evaluate(py::object const &uv, py::object const &points,
                                      int numResults) const {
         int length = 0;
-        std::vector<double> const controlPoints = gather(points, &length);
+        std::vector<double> patchPoints = gather(points, &length);
         bool const isPattern = py::isinstance<FaceTessellation>(uv);
         std::vector<double> const places = isPattern ? std::vector<double>() : takePlaces(uv);
         LevelTessellation const *const pattern =
@@ -194,24 +194,28 @@ private:
             py::gil_scoped_release const release;
             PointDescriptor const desc(length);
             if (pattern && numResults == 1) {
-                _surface.Evaluate(*pattern, controlPoints.data(), desc, data[0], desc);
+                _surface.Evaluate(*pattern, patchPoints.data(), desc, data[0], desc);
             } else if (pattern && numResults == 3) {
-                _surface.Evaluate(*pattern, controlPoints.data(), desc, data[0], data[1], data[2],
+                _surface.Evaluate(*pattern, patchPoints.data(), desc, data[0], data[1], data[2],
                                   desc);
             } else if (pattern) {
-                _surface.Evaluate(*pattern, controlPoints.data(), desc, data[0], data[1], data[2],
+                _surface.Evaluate(*pattern, patchPoints.data(), desc, data[0], data[1], data[2],
                                   data[3], data[4], data[5], desc);
+            }
+            if (!pattern) {
+                patchPoints.resize(std::size_t(_surface.GetNumPatchPoints()) * std::size_t(length));
+                _surface.ComputePatchPoints(patchPoints.data(), desc);
             }
             for (std::size_t i = 0; i < places.size() / 2; ++i) {
                 double const *const place = places.data() + 2 * i;
                 std::size_t const first = i * std::size_t(length);
                 if (numResults == 1) {
-                    _surface.Evaluate(place, controlPoints.data(), desc, data[0] + first);
+                    _surface.Evaluate(place, patchPoints.data(), desc, data[0] + first);
                 } else if (numResults == 3) {
-                    _surface.Evaluate(place, controlPoints.data(), desc, data[0] + first,
+                    _surface.Evaluate(place, patchPoints.data(), desc, data[0] + first,
                                       data[1] + first, data[2] + first);
                 } else {
-                    _surface.Evaluate(place, controlPoints.data(), desc, data[0] + first,
+                    _surface.Evaluate(place, patchPoints.data(), desc, data[0] + first,
                                       data[1] + first, data[2] + first, data[3] + first,
                                       data[4] + first, data[5] + first);
                 }

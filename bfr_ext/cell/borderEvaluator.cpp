@@ -196,12 +196,6 @@ void BorderEvaluator<REAL>::evaluateInside(std::size_t edge, bool isRate, int le
     });
 }
 
-template <typename REAL>
-void BorderEvaluator<REAL>::EvaluatePoint(std::size_t edge, Pair const &place, REAL *result) {
-    setEdge(edge);
-    sumUp(makeMatrix(*_edge.type, _edge.cell, {place[_isReversed ? 0 : 1]}), result, 0);
-}
-
 // They are kept one by one, since polylines have few in common, and without what a matrix of one place is
 // filled up with, which is most of it.
 template <typename REAL>

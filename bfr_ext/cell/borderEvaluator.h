@@ -38,12 +38,10 @@ public:
     void EvaluateEdge(std::size_t edge, int level, REAL *results, std::ptrdiff_t stride);
     /// Writes the points at 1/rate, 2/rate ... inside of an edge, in the direction of the face.
     void EvaluateRate(std::size_t edge, int rate, REAL *results, std::ptrdiff_t stride);
-    /// \brief Writes a point of an edge.
+    /// \brief Writes a point of a polyline, the stencil of which is kept as long as the type if the place is one of
+    /// level kLastKeptLevel: deeper ones are many, and seldom come twice.
     ///
     /// \param place  what the start and the end of the edge weigh
-    void EvaluatePoint(std::size_t edge, Pair const &place, REAL *result);
-    /// \brief The same, to the bit, of a place of a polyline, the stencil of which is kept as long as the type if
-    /// the place is one of level kLastKeptLevel: deeper ones are many, and seldom come twice.
     void EvaluateKeptPoint(std::size_t edge, Pair const &place, REAL *result);
 
     static constexpr int kLastKeptLevel = 8;

@@ -32,6 +32,9 @@ double snap(double coordinate, double tolerance) {
 }
 
 Pair clampToSector(Pair const &coords) {
+    if (coords[0] >= 0 && coords[1] >= 0 && coords[0] + coords[1] <= 1) {
+        return coords;
+    }
     double const a = std::max(coords[0], 0.0);
     double const b = std::max(coords[1], 0.0);
     double const scale = 1 / std::max(a + b, 1.0);
@@ -44,7 +47,7 @@ Pair clampToHalf(Pair const &coords) {
 }
 
 // The linear map from u and v, relative to the centre, to the coordinates in a sector.
-void findSectorMap(BasePolygon const &polygon, int sector, Pair (&rows)[2]) {
+void makeSectorMap(BasePolygon const &polygon, int sector, Pair (&rows)[2]) {
     Pair const start = polygon.GetCorner(sector);
     Pair const end = polygon.GetCorner((sector + 1) % polygon.GetSize());
     double const determinant = start[0] * end[1] - start[1] * end[0];
@@ -52,29 +55,74 @@ void findSectorMap(BasePolygon const &polygon, int sector, Pair (&rows)[2]) {
     rows[1] = {-start[1] / determinant, start[0] / determinant};
 }
 
+// The parameter plane of a face of a common size: places are found in it by the million.
+struct KnownPolygon {
+    static constexpr int kMaxSize = 8;
+
+    explicit KnownPolygon(int size) : center(BasePolygon(size).GetCenter()) {
+        for (int sector = 0; sector < size; ++sector) {
+            makeSectorMap(BasePolygon(size), sector, maps[sector]);
+        }
+    }
+
+    static KnownPolygon const &Get(int size) {
+        static KnownPolygon const all[] = {KnownPolygon(3), KnownPolygon(4), KnownPolygon(5),
+                                           KnownPolygon(6), KnownPolygon(7), KnownPolygon(8)};
+        return all[size - 3];
+    }
+
+    Pair center;
+    Pair maps[kMaxSize][2];
+};
+
+Pair getCenter(int size) {
+    return size <= KnownPolygon::kMaxSize ? KnownPolygon::Get(size).center
+                                          : BasePolygon(size).GetCenter();
+}
+
+void findSectorMap(int size, int sector, Pair (&rows)[2]) {
+    if (size <= KnownPolygon::kMaxSize) {
+        auto const &known = KnownPolygon::Get(size).maps[sector];
+        rows[0] = known[0];
+        rows[1] = known[1];
+    } else {
+        makeSectorMap(BasePolygon(size), sector, rows);
+    }
+}
+
 } // namespace
 
 BasePoint FindBasePoint(int size, double u, double v, double tolerance) {
-    BasePolygon const polygon(size);
-    Pair const center = polygon.GetCenter();
+    Pair const center = getCenter(size);
     // Of finite coordinates the products are finite.
     double const x = std::clamp(u - center[0], -kFar, kFar);
     double const y = std::clamp(v - center[1], -kFar, kFar);
-    BasePoint best = {};
-    double bestLeast = 0;
-    for (int sector = 0; sector < size; ++sector) {
+    auto const findIn = [&](int sector) {
         BasePoint point = {sector, {}, {}};
-        findSectorMap(polygon, sector, point.toCoords);
+        findSectorMap(size, sector, point.toCoords);
         for (std::size_t i = 0; i < 2; ++i) {
             point.coords[i] = point.toCoords[i][0] * x + point.toCoords[i][1] * y;
         }
-        double const least = std::min(point.coords[0], point.coords[1]);
-        if (sector == 0 || least > bestLeast) {
-            best = point;
-            bestLeast = least;
+        return point;
+    };
+    BasePoint best;
+    if (size == 4) { // by far the most
+        constexpr int kSectors[2][2] = {{0, 1}, {3, 2}};
+        best = findIn(kSectors[y > x ? 1 : 0][y > -x ? 1 : 0]);
+    } else {
+        best = findIn(0);
+        for (int sector = 1; sector < size; ++sector) {
+            BasePoint const point = findIn(sector);
+            if (std::min(point.coords[0], point.coords[1]) >
+                std::min(best.coords[0], best.coords[1])) {
+                best = point;
+            }
         }
     }
-    best.coords = clampToSector({snap(best.coords[0], tolerance), snap(best.coords[1], tolerance)});
+    if (tolerance > 0) {
+        best.coords = {snap(best.coords[0], tolerance), snap(best.coords[1], tolerance)};
+    }
+    best.coords = clampToSector(best.coords);
     // Between two sectors it is the second, as in tessellations.
     if (best.coords[0] == 0) {
         return MakeBasePoint(size, (best.sector + 1) % size, {best.coords[1], 0});
@@ -84,7 +132,7 @@ BasePoint FindBasePoint(int size, double u, double v, double tolerance) {
 
 BasePoint MakeBasePoint(int size, int sector, Pair const &coords) {
     BasePoint point = {sector, coords, {}};
-    findSectorMap(BasePolygon(size), sector, point.toCoords);
+    findSectorMap(size, sector, point.toCoords);
     return point;
 }
 
@@ -181,7 +229,7 @@ void CellStencil::Place::AddDerivatives(std::size_t corner, double weight,
     Pair ofCorner[2] = {toCoords[0], toCoords[1]};
     if (type->IsWhole()) {
         // The corner has the coordinates of its own sector, larger by what the steps have made them.
-        findSectorMap(BasePolygon(type->GetNumCorners()), int(corner), ofCorner);
+        findSectorMap(type->GetNumCorners(), int(corner), ofCorner);
         for (Pair &row : ofCorner) {
             row = {std::ldexp(row[0], depth), std::ldexp(row[1], depth)};
         }

@@ -22,7 +22,7 @@ struct BasePoint {
 /// centre to it leaves the face.  Its coordinates are not numbers where u or v is none.
 ///
 /// \param tolerance  of coordinates: those that are so close to a multiple of a small power of 1/2, as
-///                   vertices have, are taken for it
+///                   vertices have, are taken for it; 0: none are
 BasePoint FindBasePoint(int size, double u, double v, double tolerance);
 /// The point with coordinates in a sector, which are inside.
 BasePoint MakeBasePoint(int size, int sector, Pair const &coords);

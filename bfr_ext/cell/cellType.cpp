@@ -4,9 +4,12 @@
 #include "plainFace.h"
 #include "ringCell.h"
 
+#include "far_ext/patch/cellPatchPoints.h"
+
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 
 namespace OpenSubdivHex::BfrExt::internal {
 
@@ -351,6 +354,18 @@ CellType::LatticeBorder const &CellType::GetLatticeBorder() const {
         }
         return border;
     });
+}
+
+std::vector<double> CellType::FindPatchPoints(PatchAges const &ages) const {
+    std::vector<double> rows;
+    if (!FindCellPatchPoints(_cell, _rules.sdcOptions, _rules.schemeOptions, _rules.interpolation,
+                             ages, rows)
+             .IsOk()) {
+        rows.assign(std::size_t(GetNumCellPatches(_cell.kind, GetNumCorners()) * kNumPatchPoints *
+                                GetNumPoints()),
+                    std::numeric_limits<double>::quiet_NaN());
+    }
+    return rows;
 }
 
 std::vector<CellType::Corner> const &CellType::GetCorners() const {

@@ -7,6 +7,7 @@
 #include "stepMatrix.h"
 
 #include "far_ext/limit/cellPatch.h"
+#include "far_ext/patch/patchBuilder.h"
 
 #include <memory>
 #include <mutex>
@@ -134,6 +135,9 @@ public:
         bool isAlike;
     };
     LatticeBorder const &GetLatticeBorder() const;
+    /// \brief The points of the Gregory patches of a cell, as FarExt::internal::FindCellPatchPoints() has them;
+    /// not numbers where it has no limit at a corner.
+    std::vector<double> FindPatchPoints(FarExt::internal::PatchAges const &ages) const;
     /// What has been made of this type.
     PatternTable &GetPatterns() const { return _patterns; }
 

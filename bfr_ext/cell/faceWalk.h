@@ -25,7 +25,7 @@ public:
 
     /// \param level  it has full topology, and must live as long
     explicit FaceWalk(FarExt::internal::Level const &level)
-        : _level(level), _marks(FarExt::internal::MarkFeatures(level)) {
+        : _level(level), _marks(FarExt::internal::GetVertexMarks(level)) {
         findCrowds();
     }
     FaceWalk(FaceWalk const &) = delete;
@@ -61,8 +61,8 @@ private:
     void findNexts() const;
 
     FarExt::internal::Level const &_level;
-    std::vector<FarExt::internal::VertexMark> const _marks; // empty where all vertices are plain
-    std::vector<Crowd> _crowds;                             // ascending
+    std::vector<FarExt::internal::VertexMark> const &_marks; // empty where all vertices are plain
+    std::vector<Crowd> _crowds;                              // ascending
     mutable std::once_flag _once;
     mutable std::vector<Next> _nexts;
 };

@@ -4,7 +4,9 @@
 
 #include "far_ext/vtr/basePolygon.h"
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <vector>
 
 namespace OpenSubdivHex::BfrExt::internal {
@@ -65,9 +67,9 @@ public:
     static int FindChild(Pair const &point) {
         double const x = 2 * point[0] - 1;
         double const h = point[1];
-        int const edge = x > h ? 1 : -x > h ? 3 : 2;
-        double const fromMiddle = edge == 2 ? 2 * h : (edge == 1 ? x : -x) + h;
-        return fromMiddle <= 0.5 ? 0 : edge;
+        // Without branches: places come in any order.
+        int const edge = 2 - int(x > h) + int(-x > h);
+        return edge * int(h + std::max(h, std::abs(x)) > 0.5);
     }
 
     /// The child that has a corner, and which corner of that it is.

@@ -39,7 +39,8 @@ enum class PatternOf {
     HeightFit,
     TermIntervals,
     SlopeBounds,
-    SecondDerivatives
+    SecondDerivatives,
+    PatchPoints
 };
 
 /// \brief What was made for some keys, of whatever type.

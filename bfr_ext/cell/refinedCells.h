@@ -54,11 +54,11 @@ public:
     /// Drops all cells but so many.  Those that are left are not asked for children that are dropped.
     void Drop(std::size_t size) { _size = size; }
 
-private:
-    // Irregular meshes have about as many types of base faces and of their children as there are of these, and few of
-    // later cells.
+    /// The first level whose cells are of few types, that of a lattice apart: irregular meshes have about as many
+    /// types of base faces and of their children as there are of these.
     static constexpr int kFirstCommonLevel = 2;
 
+private:
     struct Cell {
         CellValues values;
         std::size_t firstChild = 0;           // 0: not made

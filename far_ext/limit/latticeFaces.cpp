@@ -293,7 +293,7 @@ LatticeFaces::LatticeFaces(MeshLevels const &mesh, int level) : _mesh(mesh), _le
 void LatticeFaces::findFaces(int faceSize) {
     Level const &level = _mesh.levels[0];
     LatticePatch const patch(faceSize);
-    std::vector<VertexMark> const marks = MarkFeatures(level);
+    std::vector<VertexMark> const &marks = GetVertexMarks(level);
     auto const isOfLattice = [&](Index vert) {
         Far::ConstIndexArray const faces = level.GetVertexFaces(vert);
         return faces.size() == patch.GetValence() &&

@@ -117,15 +117,26 @@ bool LimitPatchGatherer::comesApart(Index vert) {
 }
 
 // What tells the vertex of the patch that a corner has: that of the level or, where it comes apart, the fan.
+// When the complete vertices have numbers, others do not come apart, as in plain neighborhoods.
 Index LimitPatchGatherer::findKey(Index corner) {
     Index const vert = _level.faceVerts[corner];
-    return comesApart(vert) ? _fanKeys.Find(corner) : vert;
+    if (!comesApart(vert)) {
+        return vert;
+    }
+    Index const key = _fanKeys.Find(corner);
+    return _numComplete == 0 || _verts.Find(key) != Far::INDEX_INVALID ? key : vert;
 }
 
-// The same where all complete vertices have numbers: others do not come apart, as in plain neighborhoods.
-Index LimitPatchGatherer::findNumberedKey(Index corner) {
-    Index const key = findKey(corner);
-    return _verts.Find(key) == Far::INDEX_INVALID ? _level.faceVerts[corner] : key;
+// The number of the vertex of a corner, INDEX_INVALID where the patch has none.
+Index LimitPatchGatherer::findVertex(Index corner) { return _verts.Find(findKey(corner)); }
+
+Index LimitPatchGatherer::addVertex(Index corner, LimitPatch &patch) {
+    Index const next = Index(patch.sources.size());
+    Index const found = _verts.FindOrSet(findKey(corner), next);
+    if (found == next) {
+        patch.sources.push_back(_level.faceVerts[corner]);
+    }
+    return found;
 }
 
 // The corner at an end of an edge.
@@ -134,23 +145,19 @@ Index LimitPatchGatherer::findEndCorner(Index edge, int end) const {
     return end == 0 ? corner : _level.GetNextCorner(_level.edgeFaces[edge][0], corner);
 }
 
-Index LimitPatchGatherer::findEndKey(Index edge, int end) {
-    return findKey(findEndCorner(edge, end));
+Index LimitPatchGatherer::findEndVertex(Index edge, int end) {
+    return findVertex(findEndCorner(edge, end));
 }
 
-// That of the first corner that a vertex has in the faces around another one, which does not come apart.
-Index LimitPatchGatherer::findKeyBeside(Index vert, Index neighbor) {
-    if (comesApart(neighbor)) {
-        for (Index const face : _level.GetVertexFaces(vert)) {
-            for (Index corner = _level.faceFirstCorner[face];
-                 corner < _level.faceFirstCorner[face + 1]; ++corner) {
-                if (_level.faceVerts[corner] == neighbor) {
-                    return findNumberedKey(corner);
-                }
-            }
+// The first corner of a neighbour in the faces around a vertex.
+Index LimitPatchGatherer::findCornerBeside(Index vert, Index neighbor) const {
+    for (Index const face : _level.GetVertexFaces(vert)) {
+        Far::ConstIndexArray const verts = _level.GetFaceVertices(face);
+        if (int const local = verts.FindIndex(neighbor); local >= 0) {
+            return _level.faceFirstCorner[face] + local;
         }
     }
-    return neighbor;
+    return Far::INDEX_INVALID;
 }
 
 // Calls function(fan, first of its edges, their number) for the fans of a vertex of the patch.
@@ -160,7 +167,7 @@ void LimitPatchGatherer::forEachFanOf(int vert, LimitPatch const &patch, FUNCTIO
     Index firstEdge = _level.vertFirstEdge[source];
     ForEachFan(_level, source, [&](VertexFan const &fan) {
         int const numEdges = fan.end - fan.begin + !fan.isClosed;
-        if (findKey(_level.GetVertexCorner(fan.begin)) == _keys[std::size_t(vert)]) {
+        if (findVertex(_level.GetVertexCorner(fan.begin)) == vert) {
             function(fan, firstEdge, numEdges);
         }
         firstEdge += numEdges;
@@ -237,16 +244,6 @@ int LimitPatchGatherer::findFirstFace(VertexFan const &fan, int &firstSide) {
     return best;
 }
 
-Index LimitPatchGatherer::addVertex(Index key, Index vert, LimitPatch &patch) {
-    Index const next = Index(patch.sources.size());
-    Index const found = _verts.FindOrSet(key, next);
-    if (found == next) {
-        _keys.push_back(key);
-        patch.sources.push_back(vert);
-    }
-    return found;
-}
-
 // The corners of a face begin at local, unless corner 0 stands out.
 void LimitPatchGatherer::addFace(Index face, int local, bool isRing, LimitPatch &patch) {
     Index const next = Index(patch.faceSizes.size());
@@ -263,7 +260,7 @@ void LimitPatchGatherer::addFace(Index face, int local, bool isRing, LimitPatch 
     for (int i = 0; i < size; ++i) {
         Index const corner = first + (local + i) % size;
         _corners.push_back(corner);
-        Index const vert = addVertex(findNumberedKey(corner), _level.faceVerts[corner], patch);
+        Index const vert = addVertex(corner, patch);
         patch.faceVerts.push_back(vert);
         // Of the faces further out, only the corners at the neighbours of vertex 0 matter.
         if (isRing || vert < _numComplete) {
@@ -283,10 +280,7 @@ void LimitPatchGatherer::addFace(Index face, int local, bool isRing, LimitPatch 
 void LimitPatchGatherer::addEdge(Index corner, Index edge, LimitPatch &patch) {
     Index const size = Index(patch.otherCorners.size());
     Index const other = _edges.FindOrSet(edge, size);
-    auto const isEndComplete = [&](int end) {
-        return _verts.Find(findNumberedKey(findEndCorner(edge, end))) < _numComplete;
-    };
-    bool const isComplete = isEndComplete(0) || isEndComplete(1);
+    bool const isComplete = std::min(findEndVertex(edge, 0), findEndVertex(edge, 1)) < _numComplete;
     patch.edgeSharpness.push_back(isComplete ? _level.GetEdgeSharpness(edge) : 0);
     if (other != size) {
         // Further out it does not matter which faces are joined: patches that differ in nothing else
@@ -337,7 +331,7 @@ void LimitPatchGatherer::addSharpVertices(LimitPatch &patch) {
         for (int i = 0; i < 2; ++i) {
             mask.neighbors[i] =
                 mask.neighborWeights[i] > 0
-                    ? _verts.Find(findKeyBeside(patch.sources[vert], sharp->neighbors[i]))
+                    ? findVertex(findCornerBeside(patch.sources[vert], sharp->neighbors[i]))
                     : vert;
         }
         patch.sharpVerts.push_back(mask);
@@ -463,7 +457,7 @@ void LimitPatchGatherer::AddSignature(LimitPatch &patch) {
 }
 
 void LimitPatchGatherer::clear(LimitPatch &patch) {
-    _keys.clear();
+    _numComplete = 0;
     _verts.Clear();
     _faces.Clear();
     _edges.Clear();
@@ -479,7 +473,7 @@ void LimitPatchGatherer::clear(LimitPatch &patch) {
 void LimitPatchGatherer::addNeighborhood(int numCenters, LimitPatch &patch) {
     for (Index ringEdge : _ringEdges) {
         for (int end = 0; end < 2; ++end) {
-            addVertex(findEndKey(ringEdge, end), _level.edgeVerts[ringEdge][end], patch);
+            addVertex(findEndCorner(ringEdge, end), patch);
         }
     }
     _numComplete = int(patch.sources.size());
@@ -495,8 +489,7 @@ void LimitPatchGatherer::addNeighborhood(int numCenters, LimitPatch &patch) {
         // pole of several fans look alike.
         forEachFanOf(i, patch, [&](VertexFan const &fan, Index firstEdge, int numEdges) {
             int const numFaces = fan.end - fan.begin;
-            int const first =
-                findCenterEdge(_keys[std::size_t(i)], firstEdge, numEdges, numCenters) % numEdges;
+            int const first = findCenterEdge(i, firstEdge, numEdges, numCenters) % numEdges;
             for (int k = 0; k < numFaces; ++k) {
                 addFaceAt(fan.begin + (first + k) % numFaces, false);
             }
@@ -516,14 +509,14 @@ void LimitPatchGatherer::addNeighborhood(int numCenters, LimitPatch &patch) {
 }
 
 // Which of the edges of a fan leads to the first centre; numEdges where none does.
-int LimitPatchGatherer::findCenterEdge(Index neighborKey, Index firstEdge, int numEdges,
+int LimitPatchGatherer::findCenterEdge(Index neighbor, Index firstEdge, int numEdges,
                                        int numCenters) {
     int best = numEdges;
     Index bestCenter = numCenters;
     for (int i = 0; i < numEdges; ++i) {
         Index const edge = _level.vertEdges[firstEdge + i];
-        Index const start = findEndKey(edge, 0);
-        Index const center = _verts.Find(start == neighborKey ? findEndKey(edge, 1) : start);
+        Index const start = findEndVertex(edge, 0);
+        Index const center = start == neighbor ? findEndVertex(edge, 1) : start;
         if (center != Far::INDEX_INVALID && center < bestCenter) {
             best = i;
             bestCenter = center;
@@ -535,7 +528,7 @@ int LimitPatchGatherer::findCenterEdge(Index neighborKey, Index firstEdge, int n
 void LimitPatchGatherer::Gather(Index vert, LimitPatch &patch) {
     clear(patch);
     _whole = vert;
-    addVertex(vert, vert, patch);
+    addVertex(_level.GetVertexCorner(_level.vertFirstFace[vert]), patch);
     orderFans(patch);
     addNeighborhood(1, patch);
 }
@@ -543,7 +536,7 @@ void LimitPatchGatherer::Gather(Index vert, LimitPatch &patch) {
 void LimitPatchGatherer::GatherFan(Index corner, LimitPatch &patch) {
     clear(patch);
     _whole = Far::INDEX_INVALID;
-    addVertex(findKey(corner), _level.faceVerts[corner], patch);
+    addVertex(corner, patch);
     orderFans(patch);
     addNeighborhood(1, patch);
 }
@@ -554,8 +547,7 @@ int LimitPatchGatherer::GatherCell(Index face, int const *locals, int numCorners
     _whole = Far::INDEX_INVALID;
     Index const first = _level.faceFirstCorner[face];
     for (int i = 0; i < numCorners; ++i) {
-        Index const corner = first + locals[i];
-        addVertex(findKey(corner), _level.faceVerts[corner], patch);
+        addVertex(first + locals[i], patch);
     }
     int const numCenters = int(patch.sources.size());
     Index const firstVert = patch.sources[0];

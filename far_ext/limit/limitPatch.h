@@ -89,17 +89,17 @@ private:
     void clear(LimitPatch &patch);
     bool comesApart(Index vert);
     Index findKey(Index corner);
-    Index findNumberedKey(Index corner);
+    Index findVertex(Index corner);
+    Index findEndVertex(Index edge, int end);
+    Index findCornerBeside(Index vert, Index neighbor) const;
     Index findEndCorner(Index edge, int end) const;
-    Index findEndKey(Index edge, int end);
-    Index findKeyBeside(Index vert, Index neighbor);
+    Index addVertex(Index corner, LimitPatch &patch);
     template <typename FUNCTION>
     void forEachFanOf(int vert, LimitPatch const &patch, FUNCTION const &function);
     void addNeighborhood(int numCenters, LimitPatch &patch);
-    int findCenterEdge(Index neighborKey, Index firstEdge, int numEdges, int numCenters);
+    int findCenterEdge(Index neighbor, Index firstEdge, int numEdges, int numCenters);
     void orderFans(LimitPatch &patch);
     int findFirstFace(VertexFan const &fan, int &firstSide);
-    Index addVertex(Index key, Index vert, LimitPatch &patch);
     void addFace(Index face, int local, bool isRing, LimitPatch &patch);
     void addEdge(Index corner, Index edge, LimitPatch &patch);
     void addTags(LimitPatch &patch);
@@ -115,12 +115,12 @@ private:
     Index _whole = Far::INDEX_INVALID; // the vertex that does not come apart
     IndexMap _apart;                   // whether a non-manifold vertex does
     IndexMap _fanKeys;                 // of vertices that do: the key of each of their corners
-    std::vector<Index> _keys;          // by vertex of the patch
     // Numbers in the patch.
     IndexMap _verts; // by key
     IndexMap _faces;
-    IndexMap _edges;             // the first corner of each
-    int _numComplete = 0;        // vertices, the first ones, all of whose faces are in the patch
+    IndexMap _edges; // the first corner of each
+    // Vertices, the first ones, all of whose faces are in the patch; 0 until they have numbers.
+    int _numComplete = 0;
     std::vector<Index> _corners; // the level's corner of each corner of the patch
     std::vector<Index> _lines;   // the level's line of each line of the patch
     // Of the vertices that the patch is for: positions in vertFaces, and edges.

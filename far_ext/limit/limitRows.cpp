@@ -43,30 +43,31 @@ CallStatus CheckLimitLevel(Hierarchy const &hierarchy, HexSchemeOptions const &s
 /// What one thread finds masks with.
 class LimitRows::Finder {
 public:
-    Finder(LimitRows const &rows, std::vector<VertexMark> const &marks)
-        : _level(rows._level), _marks(marks), _plainGatherer(rows._level),
+    explicit Finder(LimitRows const &rows)
+        : _level(rows._level), _plainGatherer(rows._level),
           _gatherer(rows._level, rows._sdcOptions, rows._schemeOptions.faceMask),
           _finder(rows._sdcOptions, rows._schemeOptions) {}
 
-    /// Adds what a vertex has to a range.
+    /// Adds what a vertex has to a range that has nothing of it.
     void Add(Index vert, Range &range) {
+        int const firstSource = int(range.sources.size());
         if (_level.GetNumVertexFaces(vert) == 0) {
             range.sources.push_back(vert);
-            add(vert, findIsolated(), {0}, range);
-        } else if (_plainGatherer.IsRegular(vert, _marks)) {
+            add(vert, findIsolated(), firstSource, {0}, range);
+        } else if (_plainGatherer.IsRegular(vert)) {
             range.firstRegular = vert;
         } else if (ComesApart(_level, vert)) {
             ForEachFan(_level, vert, [&](VertexFan const &fan) {
                 _gatherer.GatherFan(_level.GetVertexCorner(fan.begin), _patch);
                 addPatch(vert, range);
             });
-        } else if (!_plainGatherer.Gather(vert, _marks, _neighborhood)) {
+        } else if (!_plainGatherer.Gather(vert, _neighborhood)) {
             _gatherer.Gather(vert, _patch);
             addPatch(vert, range);
         } else {
             range.sources.insert(range.sources.end(), _neighborhood.sources.begin(),
                                  _neighborhood.sources.end());
-            add(vert, findPlain(vert), {0}, range);
+            add(vert, findPlain(vert), firstSource, {0}, range);
         }
     }
 
@@ -78,12 +79,14 @@ public:
 
 private:
     void addPatch(Index vert, Range &range) {
+        int const firstSource = int(range.sources.size());
         range.sources.insert(range.sources.end(), _patch.sources.begin(), _patch.sources.end());
-        add(vert, _finder.Find(_patch), _patch.sides, range);
+        add(vert, _finder.Find(_patch), firstSource, _patch.sides, range);
     }
 
-    void add(Index vert, std::shared_ptr<LimitMask const> mask, std::vector<int> const &sides,
-             Range &range) const {
+    // The vertex, or a fan of it, whose sources are there.
+    void add(Index vert, std::shared_ptr<LimitMask const> mask, int firstSource,
+             std::vector<int> const &sides, Range &range) const {
         if (!mask) {
             range.status =
                 CallStatus(StatusCode::Unsupported, ComponentType::Vertex, vert,
@@ -91,11 +94,9 @@ private:
                                std::to_string(_level.depth) +
                                " cannot be computed: the steps around it do not converge");
         }
-        range.verts.push_back(vert);
-        range.masks.push_back(std::move(mask));
-        range.firstSources.push_back(int(range.sources.size()));
+        range.entries.push_back(
+            {vert, std::move(mask), firstSource, int(range.sides.size()), int(sides.size())});
         range.sides.insert(range.sides.end(), sides.begin(), sides.end());
-        range.firstSides.push_back(int(range.sides.size()));
     }
 
     // A vertex without faces stays where it is.
@@ -118,7 +119,6 @@ private:
     }
 
     Level const &_level;
-    std::vector<VertexMark> const &_marks;
     PlainNeighborhoodGatherer _plainGatherer;
     PlainNeighborhood _neighborhood;
     LimitPatchGatherer _gatherer;
@@ -169,25 +169,40 @@ CallStatus checkSizes(Level const &level) {
 
 } // namespace
 
+auto LimitRows::Range::FindEntry(Index vert) const -> std::vector<Entry>::const_iterator {
+    auto const found =
+        std::lower_bound(entries.begin(), entries.end(), vert,
+                         [](Entry const &entry, Index index) { return entry.vert < index; });
+    return found != entries.end() && found->vert == vert ? found : entries.end();
+}
+
 CallStatus LimitRows::Find(std::vector<Index> const &verts) {
-    if (CallStatus result = checkSizes(_level); !result.IsOk()) {
-        return result;
+    if (_ranges.empty()) {
+        if (CallStatus result = checkSizes(_level); !result.IsOk()) {
+            return result;
+        }
+        _ranges.resize(std::size_t(GetNumParallelRanges(_level.numVertices, kRange)));
     }
-    std::vector<VertexMark> const marks = MarkFeatures(_level);
-    _ranges.assign(std::size_t(GetNumParallelRanges(_level.numVertices, kRange)), Range());
-    _regularMask.reset();
     ParallelForRange(
-        _level.numVertices, [&] { return Finder(*this, marks); },
+        _level.numVertices, [&] { return Finder(*this); },
         [&](Finder &finder, Index begin, Index end) {
             // Patches are small: their loops gain nothing by help, and lose much where that is busy.
             ExecutorScope const alone(nullptr, 1);
             Range &range = _ranges[std::size_t(begin / kRange)];
-            range.firstSources.push_back(0);
-            range.firstSides.push_back(0);
+            std::size_t const numKnown = range.entries.size();
+            std::size_t known = 0;
             auto vert = std::lower_bound(verts.begin(), verts.end(), begin);
             for (; vert != verts.end() && *vert < end && range.status.IsOk(); ++vert) {
-                finder.Add(*vert, range);
+                while (known < numKnown && range.entries[known].vert < *vert) {
+                    ++known;
+                }
+                if (known == numKnown || range.entries[known].vert != *vert) {
+                    finder.Add(*vert, range);
+                }
             }
+            auto const first = range.entries.begin();
+            std::inplace_merge(first, first + std::ptrdiff_t(numKnown), range.entries.end(),
+                               [](Entry const &a, Entry const &b) { return a.vert < b.vert; });
         },
         kRange);
     for (Range const &range : _ranges) {
@@ -195,7 +210,7 @@ CallStatus LimitRows::Find(std::vector<Index> const &verts) {
             return range.status;
         }
         if (!_regularMask && range.firstRegular != Far::INDEX_INVALID) {
-            _regularMask = Finder(*this, marks).Find(range.firstRegular);
+            _regularMask = Finder(*this).Find(range.firstRegular);
         }
     }
     return CallStatus();
@@ -204,21 +219,20 @@ CallStatus LimitRows::Find(std::vector<Index> const &verts) {
 LimitRow LimitRows::GetRow(Index vert, int side,
                            Index regularSources[PlainNeighborhoodGatherer::kNumRegular]) const {
     Range const &range = _ranges[std::size_t(vert / kRange)];
-    auto const found = std::lower_bound(range.verts.begin(), range.verts.end(), vert);
-    if (found == range.verts.end() || *found != vert) {
+    auto entry = range.FindEntry(vert);
+    if (entry == range.entries.end()) {
         PlainNeighborhoodGatherer::GatherRegular(_level, vert, regularSources);
         LimitMask::Tangents const &tangents = _regularMask->sides[0];
         return {PlainNeighborhoodGatherer::kNumRegular, regularSources,
                 _regularMask->weights.data(), tangents.du.data(), tangents.dv.data()};
     }
-    auto i = std::size_t(found - range.verts.begin());
-    for (; side >= range.firstSides[i + 1] - range.firstSides[i]; ++i) {
-        side -= range.firstSides[i + 1] - range.firstSides[i];
+    for (; side >= entry->numSides; ++entry) {
+        side -= entry->numSides;
     }
-    LimitMask const &mask = *range.masks[i];
-    int const *const sides = range.sides.data() + range.firstSides[i];
-    LimitMask::Tangents const &tangents = mask.sides[std::size_t(sides[side])];
-    return {int(mask.weights.size()), range.sources.data() + range.firstSources[i],
+    LimitMask const &mask = *entry->mask;
+    LimitMask::Tangents const &tangents =
+        mask.sides[std::size_t(range.sides[std::size_t(entry->firstSide + side)])];
+    return {int(mask.weights.size()), range.sources.data() + entry->firstSource,
             mask.weights.data(), tangents.du.data(), tangents.dv.data()};
 }
 

@@ -62,7 +62,7 @@ public:
     /// Finds all masks, in parallel, or says for which vertex there is none: of those where
     /// kMaxFacesAtLimit is exceeded before anything else is done.
     CallStatus Find();
-    /// Those of \p verts alone, which ascend.
+    /// Those of \p verts alone, which ascend, beside those that are found already.
     CallStatus Find(std::vector<Index> const &verts);
 
     Level const &GetLevel() const { return _level; }
@@ -73,14 +73,22 @@ public:
                     Index regularSources[PlainNeighborhoodGatherer::kNumRegular]) const;
 
 private:
-    /// The vertices of a range of the level that are not regular, and what they have.
+    /// A vertex that is not regular, or one of its fans where it comes apart.
+    struct Entry {
+        Index vert;
+        std::shared_ptr<LimitMask const> mask;
+        int firstSource; ///< in the sources of the range
+        int firstSide;   ///< in its sides
+        int numSides;
+    };
+    /// The vertices of a range of the level that are not regular.
     struct Range {
-        std::vector<Index> verts; ///< ascending; once for each fan of those that come apart
-        std::vector<std::shared_ptr<LimitMask const>> masks;
-        std::vector<int> firstSources; ///< in sources; one more than vertices
+        /// That of the first fan of a vertex; \p vert is in the range.
+        std::vector<Entry>::const_iterator FindEntry(Index vert) const;
+
+        std::vector<Entry> entries; ///< ascending
         std::vector<Index> sources;
-        std::vector<int> firstSides; ///< in sides
-        std::vector<int> sides;      ///< of the mask, by side of the vertex
+        std::vector<int> sides; ///< of masks, by side of the vertex
         Index firstRegular = Far::INDEX_INVALID;
         CallStatus status;
     };
@@ -92,7 +100,7 @@ private:
     Level const &_level;
     Sdc::Options const _sdcOptions;
     HexSchemeOptions const _schemeOptions;
-    std::vector<Range> _ranges;
+    std::vector<Range> _ranges; ///< none before the first call of Find()
     std::shared_ptr<LimitMask const> _regularMask;
 };
 

@@ -64,7 +64,6 @@ PlainFaces::PlainFaces(MeshLevels const &mesh, int level, std::vector<unsigned c
 
 void PlainFaces::findFaces() {
     Level const &level = _mesh.levels[std::size_t(_level)];
-    std::vector<VertexMark> const marks = MarkFeatures(level);
     std::vector<Candidates> ofRanges(std::size_t(GetNumParallelRanges(level.numFaces, kRange)));
     struct Scratch {
         PlainNeighborhoodGatherer gatherer;
@@ -80,7 +79,7 @@ void PlainFaces::findFaces() {
             Candidates &result = ofRanges[std::size_t(begin / kRange)];
             PlainNeighborhood &neighborhood = scratch.neighborhood;
             for (Index face = begin; face < end; ++face) {
-                if (!scratch.gatherer.GatherFace(face, marks, neighborhood) ||
+                if (!scratch.gatherer.GatherFace(face, neighborhood) ||
                     !makesAny(face, scratch.outputs)) {
                     continue;
                 }

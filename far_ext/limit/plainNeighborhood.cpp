@@ -76,6 +76,51 @@ bool gatherHexagons(Level const &level, Index vert, Index *sources, IS_HEXAGON i
     return true;
 }
 
+std::vector<VertexMark> markFeatures(Level const &level) {
+    std::vector<VertexMark> result;
+    if (level.GetNumBoundaries() == 0 && level.edgeSharpness.empty() &&
+        level.vertSharpness.empty() && level.nonManifoldVerts.empty() && level.sharpVerts.empty() &&
+        !level.HasFeatures()) {
+        return result;
+    }
+    result.resize(std::size_t(level.numVertices), VertexMark::Plain);
+    for (IrregularCorner const &irregular : level.irregularCorners) {
+        for (Index vert : level.GetFaceVertices(level.FindFaceOfCorner(irregular.corner))) {
+            result[std::size_t(vert)] = VertexMark::Irregular;
+        }
+    }
+    auto const mark = [&](Index vert) { result[std::size_t(vert)] = VertexMark::Feature; };
+    auto const markEdge = [&](Index edge) {
+        mark(level.edgeVerts[edge][0]);
+        mark(level.edgeVerts[edge][1]);
+    };
+    auto const markFace = [&](Index face) {
+        for (Index vert : level.GetFaceVertices(face)) {
+            mark(vert);
+        }
+    };
+    std::for_each(level.boundaryEdges.begin(), level.boundaryEdges.end(), markEdge);
+    std::for_each(level.halfFaces.begin(), level.halfFaces.end(), markFace);
+    std::for_each(level.nonManifoldVerts.begin(), level.nonManifoldVerts.end(), mark);
+    for (SharpVertex const &sharp : level.sharpVerts) {
+        mark(sharp.vert);
+    }
+    for (SectorCorner const &sector : level.sectorCorners) {
+        markFace(level.FindFaceOfCorner(sector.corner));
+    }
+    auto const forEachSharp = [](Buffer<float> const &tags, auto function) {
+        for (std::size_t i = 0; i < tags.size(); ++i) {
+            if (Crease::IsSharp(tags[i])) {
+                function(Index(i));
+            }
+        }
+    };
+    forEachSharp(level.edgeSharpness, markEdge);
+    forEachSharp(level.diagonalSharpness, markFace);
+    forEachSharp(level.vertSharpness, mark);
+    return result;
+}
+
 } // namespace
 
 // As LimitPatchGatherer does: from the face on with which the sequence of sizes is the least.
@@ -195,11 +240,7 @@ bool PlainNeighborhoodGatherer::addFacesFrom(Index vert, int first, bool isKeyOf
     return true;
 }
 
-bool PlainNeighborhoodGatherer::Gather(Index vert, std::vector<VertexMark> const &marks,
-                                       PlainNeighborhood &result) {
-    auto const hasFeature = [&](Index index) {
-        return !marks.empty() && marks[std::size_t(index)] == VertexMark::Feature;
-    };
+bool PlainNeighborhoodGatherer::Gather(Index vert, PlainNeighborhood &result) {
     int const numFaces = _level.GetNumVertexFaces(vert);
     if (hasFeature(vert) || numFaces < kRegularValence || numFaces >= kEndOfBytes) {
         return false;
@@ -247,19 +288,15 @@ bool PlainNeighborhoodGatherer::addFacesAround(Index vert, PlainNeighborhood &re
     return addFacesFrom(vert, int(first - faces.begin()), true, result);
 }
 
-bool PlainNeighborhoodGatherer::GatherFace(Index face, std::vector<VertexMark> const &marks,
-                                           PlainNeighborhood &result) {
-    auto const hasFeature = [&](Index vert) {
-        return !marks.empty() && marks[std::size_t(vert)] == VertexMark::Feature;
-    };
+bool PlainNeighborhoodGatherer::GatherFace(Index face, PlainNeighborhood &result) {
     _numbers.Clear();
     _faces.clear();
     _neighbors.clear();
     result.key.clear();
     result.sources.clear();
     Far::ConstIndexArray const verts = _level.GetFaceVertices(face);
-    if (std::any_of(verts.begin(), verts.end(), hasFeature) || !addFace(face, 0, result) ||
-        result.sources.size() != std::size_t(verts.size())) {
+    if (std::any_of(verts.begin(), verts.end(), [this](Index vert) { return hasFeature(vert); }) ||
+        !addFace(face, 0, result) || result.sources.size() != std::size_t(verts.size())) {
         return false;
     }
     for (Index const vert : verts) {
@@ -301,9 +338,9 @@ void PlainNeighborhoodGatherer::GatherRegular(Level const &level, Index vert,
     gatherHexagons(level, vert, sources, [](FaceCorner const &, Index) { return true; });
 }
 
-bool PlainNeighborhoodGatherer::IsRegular(Index vert, std::vector<VertexMark> const &marks) const {
+bool PlainNeighborhoodGatherer::IsRegular(Index vert) const {
     auto const isPlain = [&](Index index) {
-        return (marks.empty() || marks[std::size_t(index)] == VertexMark::Plain) &&
+        return (_marks.empty() || _marks[std::size_t(index)] == VertexMark::Plain) &&
                _level.GetNumVertexFaces(index) == kRegularValence;
     };
     // The neighbours are plain before the faces around them are looked for.
@@ -323,49 +360,9 @@ bool PlainNeighborhoodGatherer::IsRegular(Index vert, std::vector<VertexMark> co
     return numEqual == kNumRegular;
 }
 
-std::vector<VertexMark> MarkFeatures(Level const &level) {
-    std::vector<VertexMark> result;
-    if (level.GetNumBoundaries() == 0 && level.edgeSharpness.empty() &&
-        level.vertSharpness.empty() && level.nonManifoldVerts.empty() && level.sharpVerts.empty() &&
-        !level.HasFeatures()) {
-        return result;
-    }
-    result.resize(std::size_t(level.numVertices), VertexMark::Plain);
-    for (IrregularCorner const &irregular : level.irregularCorners) {
-        for (Index vert : level.GetFaceVertices(level.FindFaceOfCorner(irregular.corner))) {
-            result[std::size_t(vert)] = VertexMark::Irregular;
-        }
-    }
-    auto const mark = [&](Index vert) { result[std::size_t(vert)] = VertexMark::Feature; };
-    auto const markEdge = [&](Index edge) {
-        mark(level.edgeVerts[edge][0]);
-        mark(level.edgeVerts[edge][1]);
-    };
-    auto const markFace = [&](Index face) {
-        for (Index vert : level.GetFaceVertices(face)) {
-            mark(vert);
-        }
-    };
-    std::for_each(level.boundaryEdges.begin(), level.boundaryEdges.end(), markEdge);
-    std::for_each(level.halfFaces.begin(), level.halfFaces.end(), markFace);
-    std::for_each(level.nonManifoldVerts.begin(), level.nonManifoldVerts.end(), mark);
-    for (SharpVertex const &sharp : level.sharpVerts) {
-        mark(sharp.vert);
-    }
-    for (SectorCorner const &sector : level.sectorCorners) {
-        markFace(level.FindFaceOfCorner(sector.corner));
-    }
-    auto const forEachSharp = [](Buffer<float> const &tags, auto function) {
-        for (std::size_t i = 0; i < tags.size(); ++i) {
-            if (Crease::IsSharp(tags[i])) {
-                function(Index(i));
-            }
-        }
-    };
-    forEachSharp(level.edgeSharpness, markEdge);
-    forEachSharp(level.diagonalSharpness, markFace);
-    forEachSharp(level.vertSharpness, mark);
-    return result;
+std::vector<VertexMark> const &GetVertexMarks(Level const &level) {
+    return *level.vertexMarks.Get(
+        [&] { return std::make_shared<std::vector<VertexMark> const>(markFeatures(level)); });
 }
 
 } // namespace OpenSubdivHex::FarExt::internal

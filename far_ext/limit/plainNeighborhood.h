@@ -26,6 +26,12 @@ enum class VertexMark : unsigned char {
     Feature    ///< something sharp, a boundary or several fans
 };
 
+/// \brief A mark for each vertex of a level; none where all are plain.
+///
+/// Feature are those that are on a boundary or not manifold, sharp, on sharp edges, or in faces that have
+/// features; Irregular others in faces with irregular corners.  The level keeps them.
+OPENSUBDIVHEX_API std::vector<VertexMark> const &GetVertexMarks(Level const &level);
+
 /// \brief Gathers the neighbourhoods of the vertices of a level, which has full topology.
 ///
 /// A vertex is *regular* when it and its neighbours have three faces each, all these are plain
@@ -37,26 +43,29 @@ public:
     /// Vertices that a regular vertex depends on.
     static constexpr int kNumRegular = 22;
 
-    explicit PlainNeighborhoodGatherer(Level const &level) : _level(level) {}
+    explicit PlainNeighborhoodGatherer(Level const &level)
+        : _level(level), _marks(GetVertexMarks(level)) {}
 
     /// \brief Gathers the neighbourhood of \p vert.
     ///
-    /// \param marks  those of MarkFeatures()
     /// \return  false where there is a feature, or something that a key cannot tell; then the
     ///          result is of no use
-    bool Gather(Index vert, std::vector<VertexMark> const &marks, PlainNeighborhood &result);
+    bool Gather(Index vert, PlainNeighborhood &result);
 
     /// \brief The same of a face: the faces around its vertices and around their neighbours.  Its vertices
     /// are the first sources, in their order.
     ///
     /// The key tells, too, of which of its vertices the face is the first one.
-    bool GatherFace(Index face, std::vector<VertexMark> const &marks, PlainNeighborhood &result);
+    bool GatherFace(Index face, PlainNeighborhood &result);
 
-    bool IsRegular(Index vert, std::vector<VertexMark> const &marks) const;
+    bool IsRegular(Index vert) const;
     /// The sources alone, of a vertex that is regular.
     static void GatherRegular(Level const &level, Index vert, Index sources[kNumRegular]);
 
 private:
+    bool hasFeature(Index vert) const {
+        return !_marks.empty() && _marks[std::size_t(vert)] == VertexMark::Feature;
+    }
     int findFirstFace(Index vert);
     bool addFace(Index face, int local, PlainNeighborhood &result);
     bool addOuterFaces(int neighbor, PlainNeighborhood &result);
@@ -65,15 +74,11 @@ private:
     void addIrregularCorners(Index face, int local, bool isRing, PlainNeighborhood &result) const;
 
     Level const &_level;
+    std::vector<VertexMark> const &_marks;
     IndexMap _numbers;             // of the sources
     std::vector<Index> _faces;     // that have been added, those around the vertex first
     std::vector<Index> _neighbors; // of the vertex
 };
-
-/// Marks the vertices of a level: Feature are those that are on a boundary or not manifold, sharp, on
-/// sharp edges, or in faces that have features; Irregular others in faces with irregular corners.
-/// Empty where all are plain.
-OPENSUBDIVHEX_API std::vector<VertexMark> MarkFeatures(Level const &level);
 
 } // namespace OpenSubdivHex::FarExt::internal
 

@@ -35,12 +35,11 @@ Marks markRegular(Level const &level, Level const *parent, Marks const &pMarks,
             std::fill_n(marks.begin() + parent->numVertices + face.firstCorner, kSize, 1);
         }
     }
-    std::vector<VertexMark> const vertexMarks = MarkFeatures(level);
     PlainNeighborhoodGatherer const gatherer(level);
     ParallelFor(level.numVertices, [&](Index vert) {
         unsigned char &mark = marks[std::size_t(vert)];
         if (!mark) {
-            mark = gatherer.IsRegular(vert, vertexMarks);
+            mark = gatherer.IsRegular(vert);
         }
     });
     return marks;

@@ -3,10 +3,72 @@
 
 #include <opensubdiv/far/patchTableFactory.h>
 #include <opensubdiv/far/stencilTable.h>
-#include <opensubdiv/far/topologyDescriptor.h>
 #include <opensubdiv/far/topologyRefinerFactory.h>
 
+#include <algorithm>
 #include <numeric>
+
+namespace OpenSubdivHex::FarExt::internal {
+
+namespace {
+
+// Quads, each with vertices of its own, which are the values of as many channels as are wanted.
+struct IsolatedQuads {
+    int numQuads;
+    std::vector<PatchTableContent::Channel> const &channels;
+};
+using QuadRefinerFactory = OpenSubdiv::Far::TopologyRefinerFactory<IsolatedQuads>;
+
+void setCorners(Far::Index quad, OpenSubdiv::Vtr::Array<Far::Index> corners) {
+    std::iota(corners.begin(), corners.end(), 4 * quad);
+}
+
+} // namespace
+
+} // namespace OpenSubdivHex::FarExt::internal
+
+// Far's way to take a mesh.
+namespace OpenSubdiv::OPENSUBDIV_VERSION::Far {
+
+using OpenSubdivHex::FarExt::internal::IsolatedQuads;
+using OpenSubdivHex::FarExt::internal::setCorners;
+
+template <>
+bool TopologyRefinerFactory<IsolatedQuads>::resizeComponentTopology(TopologyRefiner &refiner,
+                                                                    IsolatedQuads const &mesh) {
+    setNumBaseVertices(refiner, 4 * mesh.numQuads);
+    setNumBaseFaces(refiner, mesh.numQuads);
+    for (Index quad = 0; quad < mesh.numQuads; ++quad) {
+        setNumBaseFaceVertices(refiner, quad, 4);
+    }
+    return true;
+}
+
+template <>
+bool TopologyRefinerFactory<IsolatedQuads>::assignComponentTopology(TopologyRefiner &refiner,
+                                                                    IsolatedQuads const &mesh) {
+    for (Index quad = 0; quad < mesh.numQuads; ++quad) {
+        setCorners(quad, getBaseFaceVertices(refiner, quad));
+    }
+    return true;
+}
+
+template <>
+bool TopologyRefinerFactory<IsolatedQuads>::assignFaceVaryingTopology(TopologyRefiner &refiner,
+                                                                      IsolatedQuads const &mesh) {
+    for (auto const &wanted : mesh.channels) {
+        Sdc::Options options;
+        options.SetFVarLinearInterpolation(wanted.isLinear ? Sdc::Options::FVAR_LINEAR_ALL
+                                                           : Sdc::Options::FVAR_LINEAR_NONE);
+        int const channel = createBaseFVarChannel(refiner, 4 * mesh.numQuads, options);
+        for (Index quad = 0; quad < mesh.numQuads; ++quad) {
+            setCorners(quad, getBaseFaceFVarValues(refiner, quad, channel));
+        }
+    }
+    return true;
+}
+
+} // namespace OpenSubdiv::OPENSUBDIV_VERSION::Far
 
 namespace OpenSubdivHex::FarExt::internal {
 
@@ -18,7 +80,6 @@ using OpenSubdiv::Far::StencilTableReal;
 namespace {
 
 using Factory = OpenSubdiv::Far::PatchTableFactory;
-using Descriptor = OpenSubdiv::Far::TopologyDescriptor;
 
 // A stencil table whose arrays are given.
 template <typename REAL>
@@ -47,30 +108,12 @@ private:
     explicit FilledTable(int numControlVertices) : StencilTableReal<REAL>(numControlVertices) {}
 };
 
-// The quads, each with vertices of its own, and as many channels as are wanted.
 std::unique_ptr<PatchTable> makeTable(PatchTableContent const &content) {
-    auto const numPatches = int(content.params.size());
-    std::vector<int> const sizes(std::size_t(numPatches), 4);
-    std::vector<Index> verts(4 * std::size_t(numPatches));
-    std::iota(verts.begin(), verts.end(), 0);
-    Descriptor descriptor;
-    descriptor.numVertices = 4 * numPatches;
-    descriptor.numFaces = numPatches;
-    descriptor.numVertsPerFace = sizes.data();
-    descriptor.vertIndicesPerFace = verts.data();
-    std::vector<Descriptor::FVarChannel> channels(content.channels.size());
-    for (Descriptor::FVarChannel &channel : channels) {
-        channel.numValues = descriptor.numVertices;
-        channel.valueIndices = verts.data();
-    }
-    descriptor.numFVarChannels = int(channels.size());
-    descriptor.fvarChannels = channels.data();
     OpenSubdiv::Sdc::Options sdcOptions;
     sdcOptions.SetVtxBoundaryInterpolation(Sdc::Options::VTX_BOUNDARY_EDGE_ONLY);
-    sdcOptions.SetFVarLinearInterpolation(Sdc::Options::FVAR_LINEAR_NONE);
     std::unique_ptr<OpenSubdiv::Far::TopologyRefiner> const refiner(
-        OpenSubdiv::Far::TopologyRefinerFactory<Descriptor>::Create(
-            descriptor, {OpenSubdiv::Sdc::SCHEME_CATMARK, sdcOptions}));
+        QuadRefinerFactory::Create({int(content.params.size()), content.channels},
+                                   {OpenSubdiv::Sdc::SCHEME_CATMARK, sdcOptions}));
     if (!refiner) {
         return nullptr;
     }
@@ -79,7 +122,7 @@ std::unique_ptr<PatchTable> makeTable(PatchTableContent const &content) {
     options.generateLegacySharpCornerPatches = false;
     options.generateVaryingTables = !content.varyingVertices.empty();
     options.generateVaryingLocalPoints = !content.varyingVertices.empty();
-    options.generateFVarTables = !channels.empty();
+    options.generateFVarTables = !content.channels.empty();
     options.generateFVarLegacyLinearPatches = false;
     options.patchPrecisionDouble = content.isDouble;
     options.fvarPatchPrecisionDouble = content.isFVarDouble;
@@ -93,21 +136,35 @@ void replace(ARRAY const &array, std::vector<ELEMENT> const &elements) {
     std::copy(elements.begin(), elements.end(), const_cast<ELEMENT *>(array.begin()));
 }
 
-bool replacePoints(bool isDouble, LocalPoints points, StencilTableReal<float> const *table,
-                   StencilTableReal<double> const *doubleTable) {
-    if (isDouble ? !doubleTable : !table) {
+// getTable(REAL()) is the table that Far made, in the precision of the points.
+template <typename GET_TABLE>
+bool replacePoints(bool isDouble, LocalPoints points, GET_TABLE const &getTable) {
+    auto const replaceIn = [&](auto const *table, auto weights) {
+        using Real = typename decltype(weights)::value_type;
+        if (table) {
+            FilledTable<Real>(points.numControlPoints, std::move(points.sizes),
+                              std::move(points.indices), std::move(weights))
+                .MoveTo(const_cast<StencilTableReal<Real> &>(*table));
+        }
+        return table != nullptr;
+    };
+    return isDouble ? replaceIn(getTable(double()), std::move(points.doubleWeights))
+                    : replaceIn(getTable(float()), std::move(points.weights));
+}
+
+bool replaceChannel(bool isDouble, PatchTableContent::Channel channel, int number,
+                    std::vector<OpenSubdiv::Far::PatchParam> const &params, PatchTable &table) {
+    auto const type = channel.isLinear ? PatchDescriptor::QUADS : PatchDescriptor::GREGORY_BASIS;
+    if (table.GetFVarPatchDescriptor(number).GetType() != type ||
+        std::size_t(table.GetFVarValues(number).size()) != channel.values.size()) {
         return false;
     }
-    if (isDouble) {
-        FilledTable<double>(points.numControlPoints, std::move(points.sizes),
-                            std::move(points.indices), std::move(points.doubleWeights))
-            .MoveTo(const_cast<StencilTableReal<double> &>(*doubleTable));
-    } else {
-        FilledTable<float>(points.numControlPoints, std::move(points.sizes),
-                           std::move(points.indices), std::move(points.weights))
-            .MoveTo(const_cast<StencilTableReal<float> &>(*table));
-    }
-    return true;
+    replace(table.GetFVarValues(number), channel.values);
+    replace(table.GetFVarPatchParams(number), params);
+    // Far's tables have no local points of linear channels.
+    return channel.isLinear || replacePoints(isDouble, std::move(channel.points), [&](auto real) {
+               return table.GetLocalPointFaceVaryingStencilTable<decltype(real)>(number);
+           });
 }
 
 } // namespace
@@ -122,21 +179,22 @@ std::unique_ptr<PatchTable const> MakeFarPatchTable(PatchTableContent content) {
     }
     const_cast<PatchTable::PatchVertsTable &>(table->GetPatchControlVerticesTable())
         .swap(content.vertices);
-    const_cast<OpenSubdiv::Far::PatchParamTable &>(table->GetPatchParamTable())
-        .swap(content.params);
-    bool isWell =
-        replacePoints(content.isDouble, std::move(content.points),
-                      content.isDouble ? nullptr : table->GetLocalPointStencilTable<float>(),
-                      content.isDouble ? table->GetLocalPointStencilTable<double>() : nullptr);
+    bool isWell = replacePoints(content.isDouble, std::move(content.points), [&](auto real) {
+        return table->GetLocalPointStencilTable<decltype(real)>();
+    });
     if (!content.varyingVertices.empty()) {
         replace(table->GetVaryingVertices(), content.varyingVertices);
-        isWell =
-            isWell &&
-            replacePoints(
-                content.isDouble, std::move(content.varyingPoints),
-                content.isDouble ? nullptr : table->GetLocalPointVaryingStencilTable<float>(),
-                content.isDouble ? table->GetLocalPointVaryingStencilTable<double>() : nullptr);
+        isWell = isWell &&
+                 replacePoints(content.isDouble, std::move(content.varyingPoints), [&](auto real) {
+                     return table->GetLocalPointVaryingStencilTable<decltype(real)>();
+                 });
     }
+    for (std::size_t i = 0; i < content.channels.size() && isWell; ++i) {
+        isWell = replaceChannel(content.isFVarDouble, std::move(content.channels[i]), int(i),
+                                content.params, *table);
+    }
+    const_cast<OpenSubdiv::Far::PatchParamTable &>(table->GetPatchParamTable())
+        .swap(content.params);
     return isWell ? std::move(table) : nullptr;
 }
 

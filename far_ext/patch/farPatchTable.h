@@ -32,12 +32,12 @@ struct PatchTableContent {
     LocalPoints points;
     std::vector<Far::Index> varyingVertices; ///< 4 of each patch, or none
     LocalPoints varyingPoints;
-    struct FVarChannel {
+    struct Channel {
         bool isLinear; ///< with 4 values for each patch, else 20
         std::vector<Far::Index> values;
-        LocalPoints points;
+        LocalPoints points; ///< of no matter where it is linear
     };
-    std::vector<FVarChannel> channels;
+    std::vector<Channel> channels;
 };
 
 /// The patches that a table can have: each is a face in the terms of Far::PatchParam.

@@ -46,10 +46,10 @@ LimitRow LimitStencils::KeptRow::Get(int begin, int end) const {
             weights[1].data() + begin, weights[2].data() + begin};
 }
 
-CallStatus LimitStencils::Form(Hierarchy const &hierarchy, HexSchemeOptions const &schemeOptions,
-                               int level, Index numRows,
+CallStatus LimitStencils::Form(Hierarchy const &hierarchy, int channel,
+                               HexSchemeOptions const &schemeOptions, int level, Index numRows,
                                std::function<LimitRow(Index, KeptRow &)> const &getRow) {
-    Index const numVerts = hierarchy.mesh.levels[std::size_t(level)].numVertices;
+    Index const numVerts = hierarchy.GetMesh(channel).levels[std::size_t(level)].numVertices;
     // The rows of each range, and the sources of all.
     struct RangeRows {
         KeptRow all;
@@ -79,20 +79,27 @@ CallStatus LimitStencils::Form(Hierarchy const &hierarchy, HexSchemeOptions cons
         wanted.back() = ParallelSelect(numVerts, [&](Index vert) {
             return marks[std::size_t(vert)].load(std::memory_order_relaxed) != 0;
         });
-        stencils.emplace(hierarchy, schemeOptions, std::move(wanted));
+        stencils.emplace(hierarchy, schemeOptions, std::move(wanted), channel);
         if (CallStatus result = stencils->Form(); !result.IsOk()) {
             return result;
+        }
+    } else if (channel >= 0) {
+        Buffer<Index> const &values = hierarchy.channels[std::size_t(channel)].valuesOfVertices;
+        for (RangeRows &range : rows) {
+            for (Index &source : range.all.sources) {
+                source = values[source];
+            }
         }
     }
     constexpr Index kGroup = 16; // rows that are near one another, and share sources
     static_assert(kGroup <= kMaxLimitRows && kRange % kGroup == 0);
     Index const firstSource = stencils ? stencils->GetFirst(level) : 0;
-    Index const numControlVerts = hierarchy.mesh.levels[0].numVertices;
+    Index const numControlPoints = hierarchy.GetNumControlPoints(channel);
     _ranges.assign(std::size_t(GetNumParallelRanges(numRows, kRange)), Range());
     ParallelForRange(
         numRows,
         [&] {
-            return LimitMultiplier<double>(stencils ? &*stencils : nullptr, numControlVerts, true);
+            return LimitMultiplier<double>(stencils ? &*stencils : nullptr, numControlPoints, true);
         },
         [&](LimitMultiplier<double> &multiplier, Index begin, Index end) {
             RangeRows const &ofRange = rows[std::size_t(begin / kRange)];

@@ -16,7 +16,7 @@ class LimitStencils {
 public:
     using Index = Far::Index;
 
-    /// Ascending indices of control vertices, each with three weights: for the point, du and dv.
+    /// Ascending indices of control vertices, or values, each with three weights: for the point, du and dv.
     struct Stencil {
         int size;
         Index const *indices;
@@ -40,12 +40,14 @@ public:
 
     /// \brief Makes those of \p numRows rows, in parallel.
     ///
+    /// \param channel  face-varying channel, whose values are the vertices, or -1
     /// \param level    whose vertices the rows have
     /// \param getRow   called as getRow(number, kept) by several threads, once for each row: the row of that
     ///                 number, which is valid until \p kept is used again
     /// \return         TooLarge where a size of the stencils of the level is
-    CallStatus Form(Hierarchy const &hierarchy, HexSchemeOptions const &schemeOptions, int level,
-                    Index numRows, std::function<LimitRow(Index, KeptRow &)> const &getRow);
+    CallStatus Form(Hierarchy const &hierarchy, int channel, HexSchemeOptions const &schemeOptions,
+                    int level, Index numRows,
+                    std::function<LimitRow(Index, KeptRow &)> const &getRow);
 
     Stencil Get(Index row) const;
 

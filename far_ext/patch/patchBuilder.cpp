@@ -70,7 +70,8 @@ public:
     /// \param coarser  that of the level before, if it has patches
     LevelBuilder(PatchBuilder &builder, int level, LevelBuilder const *coarser)
         : _builder(builder), _coarser(coarser), _cells(builder._cells), _depth(level),
-          _surfaceDepth(builder._schemeOptions.GetSurfaceLevel()), _mesh(builder._hierarchy.mesh),
+          _surfaceDepth(builder._schemeOptions.GetSurfaceLevel()),
+          _mesh(builder._hierarchy.GetMesh(builder._channel)),
           _level(_mesh.levels[std::size_t(level)]), _toChild(_mesh.refinements[std::size_t(level)]),
           _toLimit(GetStepsToLimit(builder._schemeOptions)),
           _rows(_level, builder._sdcOptions, builder._schemeOptions),
@@ -167,6 +168,8 @@ private:
         return _frames->Get(face, getLocal(face, half, corner), half);
     }
     double getLength(Index face, int half, int side, int end) const;
+    int getSteps() const { return _builder._ages ? _builder._ages->steps : _depth - _surfaceDepth; }
+    int findAge(Index vert) const;
     std::uint8_t findVertexCode(Index vert) const;
     bool findBesideOther(Index vert) const;
     std::uint8_t getVertexCode(Index vert) const { return _codes[std::size_t(vert)].code; }
@@ -351,18 +354,26 @@ double PatchBuilder::LevelBuilder::getLength(Index face, int half, int side, int
            _builder._constants.Get(getSite(PatchQuantity::Length, curve, vert, other));
 }
 
-std::uint8_t PatchBuilder::LevelBuilder::findVertexCode(Index vert) const {
-    if (_level.FindSharpVertex(vert)) {
-        return PatchSite::kSharp;
+// Steps since a vertex was made; -1: it is one of the surface level.
+int PatchBuilder::LevelBuilder::findAge(Index vert) const {
+    if (_builder._ages) {
+        return _builder._ages->ofVertices[std::size_t(vert)];
     }
     int depth = _surfaceDepth;
     while (vert >= _mesh.levels[std::size_t(depth)].numVertices) {
         ++depth;
     }
-    return depth == _surfaceDepth
-               ? std::uint8_t(PatchSite::kBase +
-                              std::min(_level.GetNumVertexFaces(vert), PatchSite::kMaxFaces))
-               : std::uint8_t(std::min(_depth - depth, PatchSite::kMaxAge));
+    return depth == _surfaceDepth ? -1 : _depth - depth;
+}
+
+std::uint8_t PatchBuilder::LevelBuilder::findVertexCode(Index vert) const {
+    if (_level.FindSharpVertex(vert)) {
+        return PatchSite::kSharp;
+    }
+    int const age = findAge(vert);
+    return age < 0 ? std::uint8_t(PatchSite::kBase +
+                                  std::min(_level.GetNumVertexFaces(vert), PatchSite::kMaxFaces))
+                   : std::uint8_t(std::min(age, PatchSite::kMaxAge));
 }
 
 bool PatchBuilder::LevelBuilder::findBesideOther(Index vert) const {
@@ -374,7 +385,7 @@ bool PatchBuilder::LevelBuilder::findBesideOther(Index vert) const {
 
 PatchSite PatchBuilder::LevelBuilder::getSite(PatchQuantity quantity, CellSide const &curve,
                                               Index vert, Index other) const {
-    int const steps = _depth - _surfaceDepth;
+    int const steps = getSteps();
     PatchSite site;
     site.quantity = quantity;
     site.steps = std::uint8_t(std::min(steps, PatchSite::kMaxSteps));
@@ -424,7 +435,7 @@ void PatchBuilder::LevelBuilder::addShares(Index vert, LimitStencils::KeptRow &k
     }
     PatchSite site;
     site.quantity = PatchQuantity::EdgeShare;
-    site.steps = std::uint8_t(std::min(_depth - _surfaceDepth, PatchSite::kMaxSteps));
+    site.steps = std::uint8_t(std::min(getSteps(), PatchSite::kMaxSteps));
     site.kind = PatchSite::kVertex;
     site.vert = getVertexCode(vert);
     site.isBesideOther = isBesideOther(vert);
@@ -497,7 +508,7 @@ CallStatus PatchBuilder::LevelBuilder::formDirections(
     std::vector<std::vector<std::pair<Index, double>>> &result) const {
     LimitStencils stencils;
     CallStatus status =
-        stencils.Form(_builder._hierarchy, _builder._schemeOptions, _depth,
+        stencils.Form(_builder._hierarchy, _builder._channel, _builder._schemeOptions, _depth,
                       Index(directions.size()), [&](Index number, LimitStencils::KeptRow &kept) {
                           Direction const &direction = directions[std::size_t(number)];
                           Index sources[PlainNeighborhoodGatherer::kNumRegular];
@@ -852,7 +863,7 @@ LimitRow PatchBuilder::LevelBuilder::getRow(Index number, LimitStencils::KeptRow
 
 CallStatus PatchBuilder::LevelBuilder::FormStencils() {
     return _stencils.Form(
-        _builder._hierarchy, _builder._schemeOptions, _depth,
+        _builder._hierarchy, _builder._channel, _builder._schemeOptions, _depth,
         _numVertexRows + Index(_centerRows.size()),
         [this](Index number, LimitStencils::KeptRow &kept) { return getRow(number, kept); });
 }
@@ -921,11 +932,11 @@ void PatchBuilder::LevelBuilder::AddPatches(std::vector<Index> const &pointOfVer
     }
 }
 
-PatchBuilder::PatchBuilder(Hierarchy const &hierarchy, Sdc::Options sdcOptions,
+PatchBuilder::PatchBuilder(Hierarchy const &hierarchy, int channel, Sdc::Options sdcOptions,
                            HexSchemeOptions const &schemeOptions, PatchCells const &cells,
                            PatchConstants constants)
-    : _hierarchy(hierarchy), _sdcOptions(sdcOptions), _schemeOptions(schemeOptions), _cells(cells),
-      _constants(std::move(constants)) {}
+    : _hierarchy(hierarchy), _channel(channel), _sdcOptions(sdcOptions),
+      _schemeOptions(schemeOptions), _cells(cells), _constants(std::move(constants)) {}
 
 PatchBuilder::~PatchBuilder() = default;
 
@@ -940,8 +951,9 @@ CallStatus PatchBuilder::Build() {
             return result;
         }
     }
+    MeshLevels const &mesh = _hierarchy.GetMesh(_channel);
     auto const numVertices =
-        std::size_t(_hierarchy.mesh.levels[std::size_t(_cells.GetLastLevel())].numVertices);
+        std::size_t(mesh.levels[std::size_t(_cells.GetLastLevel())].numVertices);
     std::vector<Index> pointOfVertex(numVertices, Far::INDEX_INVALID);
     _isInSeveralLevels.assign(numVertices, 0);
     for (auto const &level : _levels) {

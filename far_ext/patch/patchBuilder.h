@@ -6,6 +6,8 @@
 #include "patchConstants.h"
 
 #include <memory>
+#include <optional>
+#include <utility>
 #include <vector>
 
 namespace OpenSubdivHex::FarExt::internal {
@@ -21,23 +23,35 @@ struct PointStencils {
     std::vector<REAL> weights;
 };
 
+/// \brief How long ago a level and its vertices were made, which constants of patches depend on: for levels
+/// that are not numbered as those of a hierarchy.
+struct PatchAges {
+    int steps = 0;               ///< of the level, behind the surface level
+    std::vector<int> ofVertices; ///< steps since a vertex was made; -1: one of the surface level
+};
+
 /// \brief Makes Gregory patches of cells: numbers their points, and makes the stencils of these.
 ///
 /// Points are, in this order: the vertices at corners of cells, ascending; level by level those of
-/// edges, diagonals, and faces that are made of kites.
+/// edges, diagonals, and faces that are made of kites.  Those of a face-varying channel are in the space of its
+/// values, and cells are faces of its value mesh.
 class PatchBuilder {
 public:
     using Index = Far::Index;
 
-    PatchBuilder(Hierarchy const &hierarchy, Sdc::Options sdcOptions,
+    /// \param channel  of \p hierarchy, or -1 for its mesh
+    PatchBuilder(Hierarchy const &hierarchy, int channel, Sdc::Options sdcOptions,
                  HexSchemeOptions const &schemeOptions, PatchCells const &cells,
                  PatchConstants constants);
     /// With the constants of the mask.
-    PatchBuilder(Hierarchy const &hierarchy, Sdc::Options sdcOptions,
+    PatchBuilder(Hierarchy const &hierarchy, int channel, Sdc::Options sdcOptions,
                  HexSchemeOptions const &schemeOptions, PatchCells const &cells)
-        : PatchBuilder(hierarchy, sdcOptions, schemeOptions, cells,
+        : PatchBuilder(hierarchy, channel, sdcOptions, schemeOptions, cells,
                        PatchConstants(schemeOptions.faceMask)) {}
     ~PatchBuilder();
+
+    /// Takes the ages of the only level that has cells from here, not from the numbering of levels.
+    void SetAges(PatchAges ages) { _ages = std::move(ages); }
 
     /// Finds all limits that points are made of, and numbers the points.
     CallStatus Build();
@@ -59,10 +73,12 @@ private:
     };
 
     Hierarchy const &_hierarchy;
+    int const _channel;
     Sdc::Options const _sdcOptions;
     HexSchemeOptions const _schemeOptions;
     PatchCells const &_cells;
     PatchConstants const _constants;
+    std::optional<PatchAges> _ages;
     std::vector<std::unique_ptr<LevelBuilder>> _levels;
     std::vector<VertexPoint> _vertexPoints;
     std::vector<char> _isInSeveralLevels; // by vertex: then its tangents are the limit's

@@ -50,6 +50,12 @@ PatchCells::PatchCells(MeshLevels const &mesh, int level) : _firstLevel(level) {
     addCells(mesh, level, makeAllCells(mesh.levels[std::size_t(level)]));
 }
 
+PatchCells::PatchCells(MeshLevels const &mesh, int level, PatchCell cell) : _firstLevel(level) {
+    Marks marks(std::size_t(mesh.levels[std::size_t(level)].numFaces), 0);
+    marks[std::size_t(cell.face)] = static_cast<unsigned char>(1 << cell.half);
+    addCells(mesh, level, std::move(marks));
+}
+
 PatchCells::PatchCells(MeshLevels const &mesh, int level, std::vector<Index> const &faces)
     : _firstLevel(level) {
     Level const &topology = mesh.levels[std::size_t(level)];
@@ -126,6 +132,44 @@ PatchCells::PatchCells(MeshLevels const &mesh, int firstLevel, int lastLevel,
     while (_cells.size() > 1 && _cells.back().empty()) {
         _cells.pop_back();
         _marks.pop_back();
+    }
+}
+
+PatchCells::PatchCells(FVarChannel const &channel, MeshLevels const &mesh, PatchCells const &ofMesh,
+                       std::vector<Index> &patches)
+    : _firstLevel(ofMesh._firstLevel) {
+    for (int depth = _firstLevel; depth <= ofMesh.GetLastLevel(); ++depth) {
+        FVarLevel const &level = channel.levels[std::size_t(depth)];
+        // Hexagons on both sides of a seam are two faces there.
+        auto const getCell = [&](PatchCell const &cell) {
+            FVarLevel::SplitFace const *const split = level.FindSplitFace(cell.face);
+            return split ? PatchCell{split->valueFaces[cell.half], 0}
+                         : PatchCell{level.valueFaces[cell.face], cell.half};
+        };
+        Marks marks(std::size_t(level.values->numFaces), 0);
+        for (PatchCell const &cell : ofMesh.GetCells(depth)) {
+            PatchCell const ofValues = getCell(cell);
+            marks[std::size_t(ofValues.face)] |= 1 << ofValues.half;
+        }
+        std::vector<Index> firsts(2 * marks.size());
+        auto next = Index(_numPatches);
+        for (std::size_t face = 0; face < marks.size(); ++face) {
+            for (std::size_t half = 0; half < 2; ++half) {
+                firsts[2 * face + half] = next;
+                next += (marks[face] >> half & 1) != 0
+                            ? internal::GetNumPatches(level.values->GetFaceSize(Index(face)))
+                            : 0;
+            }
+        }
+        for (PatchCell const &cell : ofMesh.GetCells(depth)) {
+            PatchCell const ofValues = getCell(cell);
+            Index const first = firsts[2 * std::size_t(ofValues.face) + std::size_t(ofValues.half)];
+            int const size = mesh.levels[std::size_t(depth)].GetFaceSize(cell.face);
+            for (int i = 0; i < internal::GetNumPatches(size); ++i) {
+                patches.push_back(first + i);
+            }
+        }
+        addCells(channel.values, depth, std::move(marks));
     }
 }
 

@@ -32,6 +32,8 @@ public:
 
     /// All cells of one level.
     PatchCells(MeshLevels const &mesh, int level);
+    /// One cell of a level.
+    PatchCells(MeshLevels const &mesh, int level, PatchCell cell);
     /// Those of some of its faces.
     PatchCells(MeshLevels const &mesh, int level, std::vector<Index> const &faces);
 
@@ -42,6 +44,11 @@ public:
     /// Cells of levels \p firstLevel to \p lastLevel, at which no face is refined.
     PatchCells(MeshLevels const &mesh, int firstLevel, int lastLevel,
                FindRefined const &findRefined);
+    /// \brief The faces of the value mesh of a channel that are cells \p ofMesh.
+    ///
+    /// \param patches  which patch of theirs each patch of the mesh is, in the order of these
+    PatchCells(FVarChannel const &channel, MeshLevels const &mesh, PatchCells const &ofMesh,
+               std::vector<Index> &patches);
 
     int GetFirstLevel() const { return _firstLevel; }
     int GetLastLevel() const { return _firstLevel + int(_cells.size()) - 1; }

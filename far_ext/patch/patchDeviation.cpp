@@ -198,7 +198,7 @@ CallStatus PatchDeviation::Measure(int depth, std::vector<Index> const &faces,
         }
     }
     PatchCells const cells(mesh, depth, measured);
-    PatchBuilder builder(hierarchy, _refiner.GetSchemeOptions(), _refiner.GetHexSchemeOptions(),
+    PatchBuilder builder(hierarchy, -1, _refiner.GetSchemeOptions(), _refiner.GetHexSchemeOptions(),
                          cells);
     CallStatus status = builder.Build();
     PointStencils<double> stencils;

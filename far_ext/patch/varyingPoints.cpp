@@ -9,9 +9,9 @@ namespace OpenSubdivHex::FarExt::internal {
 
 using Far::Index;
 
-VaryingPoints::VaryingPoints(TopologyRefiner const &refiner, PatchCells const &cells)
-    : _refiner(refiner), _lastLevel(cells.GetLastLevel()) {
-    MeshLevels const &mesh = refiner.GetHierarchy().mesh;
+VaryingPoints::VaryingPoints(TopologyRefiner const &refiner, int channel, PatchCells const &cells)
+    : _refiner(refiner), _channel(channel), _lastLevel(cells.GetLastLevel()) {
+    MeshLevels const &mesh = refiner.GetHierarchy().GetMesh(channel);
     std::vector<Index> pointOfVertex(std::size_t(mesh.levels[std::size_t(_lastLevel)].numVertices),
                                      Far::INDEX_INVALID);
     auto const getVertexPoint = [&](Index vert) {
@@ -62,7 +62,8 @@ Index VaryingPoints::addPoint(std::vector<Index> const &verts) {
 template <typename REAL>
 CallStatus VaryingPoints::MakeStencils(PointStencils<REAL> &stencils) const {
     typename StencilTableFactoryReal<REAL>::Options options;
-    options.interpolationMode = INTERPOLATE_VARYING;
+    options.interpolationMode = _channel < 0 ? INTERPOLATE_VARYING : INTERPOLATE_FACE_VARYING;
+    options.fvarChannel = std::max(_channel, 0);
     options.generateIntermediateLevels = false;
     options.generateControlVerts = _lastLevel == 0;
     options.maxLevel = _lastLevel;
@@ -71,12 +72,18 @@ CallStatus VaryingPoints::MakeStencils(PointStencils<REAL> &stencils) const {
     if (!table) {
         return status;
     }
+    // Of level 0 the table has the values of the user.
+    auto const getRow = [&](Index vert) {
+        return _channel < 0 || _lastLevel > 0
+                   ? vert
+                   : _refiner.GetHierarchy().channels[std::size_t(_channel)].valuesOfVertices[vert];
+    };
     std::map<Index, double> sum;
     for (std::size_t point = 0; point + 1 < _firstVerts.size(); ++point) {
         sum.clear();
         double const weight = 1.0 / (_firstVerts[point + 1] - _firstVerts[point]);
         for (int i = _firstVerts[point]; i < _firstVerts[point + 1]; ++i) {
-            auto const row = std::size_t(_verts[std::size_t(i)]);
+            auto const row = std::size_t(getRow(_verts[std::size_t(i)]));
             int const begin = table->GetOffsets()[row];
             for (int k = begin; k < begin + table->GetSizes()[row]; ++k) {
                 sum[table->GetControlIndices()[std::size_t(k)]] +=

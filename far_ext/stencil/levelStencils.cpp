@@ -15,8 +15,9 @@ constexpr double kOne = 1;
 
 // That of a table which stores no level.
 StencilPlan makePlan(Hierarchy const &hierarchy, HexSchemeOptions const &schemeOptions,
-                     int lastLevel) {
+                     int lastLevel, int channel) {
     StencilPlan plan = {hierarchy, schemeOptions};
+    plan.channel = channel;
     plan.lastLevel = lastLevel;
     plan.firstStored = lastLevel + 1;
     return plan;
@@ -25,8 +26,8 @@ StencilPlan makePlan(Hierarchy const &hierarchy, HexSchemeOptions const &schemeO
 } // namespace
 
 LevelStencils::LevelStencils(Hierarchy const &hierarchy, HexSchemeOptions const &schemeOptions,
-                             std::vector<std::vector<Index>> wanted)
-    : _plan(makePlan(hierarchy, schemeOptions, int(wanted.size()) - 1)),
+                             std::vector<std::vector<Index>> wanted, int channel)
+    : _plan(makePlan(hierarchy, schemeOptions, int(wanted.size()) - 1, channel)),
       _selection(_plan, std::move(wanted), true), _symbolic(_plan, _selection),
       _levels(std::size_t(_plan.lastLevel)) {}
 
@@ -47,28 +48,23 @@ CallStatus LevelStencils::Form() {
         }
     }
     _stencils.Resize(std::size_t(numStencils));
-    addLevel(0, _symbolic.GetParentSupports(1), nullptr);
-    StencilPlaces<double> pPlaces{};
-    for (int level = 1; level <= _plan.lastLevel; ++level) {
-        RowSupports const &supports = _symbolic.GetSupports(level);
-        StencilPlaces<double> const places =
-            _levels[std::size_t(level) - 1].Place(supports.OfVertices());
-        StencilMultiplier<double>(_symbolic.GetRows(level), _symbolic.GetParentSupports(level),
-                                  supports, level > 1 ? &pPlaces : nullptr, places)
-            .Fill(_symbolic.GetNumSources(level));
-        addLevel(level, supports, &places);
-        pPlaces = places;
+    FillStencils<double>(_symbolic, [&](int level) {
+        return _levels[std::size_t(level) - 1].Place(_symbolic.GetSupports(level).OfVertices());
+    });
+    for (int level = 0; level <= _plan.lastLevel; ++level) {
+        addLevel(level);
     }
     return CallStatus();
 }
 
 // Those of control vertices are nowhere else.
-void LevelStencils::addLevel(int level, RowSupports const &supports,
-                             StencilPlaces<double> const *places) {
+void LevelStencils::addLevel(int level) {
+    RowSupports const &supports =
+        level == 0 ? _symbolic.GetParentSupports(1) : _symbolic.GetSupports(level);
     Stencil *const stencils = _stencils.data() + GetFirst(level);
     auto const add = [&](Index vert, Index row) {
         stencils[vert] = {supports.OfVertices()[std::size_t(row)],
-                          places ? places->GetWeights(row) : &kOne};
+                          level == 0 ? &kOne : _levels[std::size_t(level) - 1].GetWeights(row)};
     };
     if (level <= _selection.wholeLevel) {
         ParallelFor(_plan.GetNumVertices(level), [&](Index vert) { add(vert, vert); });

@@ -3,7 +3,6 @@
 #define OPENSUBDIVHEX_FAR_EXT_STENCIL_LEVEL_STENCILS_H
 
 #include "stencilMultiplier.h"
-#include "symbolicTable.h"
 
 namespace OpenSubdivHex::FarExt::internal {
 
@@ -21,8 +20,9 @@ public:
     /// \param hierarchy  is referred to
     /// \param wanted     the vertices of levels 0, 1 ... that are needed, ascending; of two levels at
     ///                   least
+    /// \param channel    a smooth face-varying channel, whose values are the vertices, or -1
     LevelStencils(Hierarchy const &hierarchy, HexSchemeOptions const &schemeOptions,
-                  std::vector<std::vector<Index>> wanted);
+                  std::vector<std::vector<Index>> wanted, int channel = -1);
 
     /// Makes the stencils of all that is needed, or says what is too large.
     CallStatus Form();
@@ -34,7 +34,7 @@ public:
     Stencil const &Get(Index number) const { return _stencils[std::size_t(number)]; }
 
 private:
-    void addLevel(int level, RowSupports const &supports, StencilPlaces<double> const *places);
+    void addLevel(int level);
 
     StencilPlan const _plan;
     StencilSelection const _selection;

@@ -2,7 +2,7 @@
 #ifndef OPENSUBDIVHEX_FAR_EXT_STENCIL_STENCIL_MULTIPLIER_H
 #define OPENSUBDIVHEX_FAR_EXT_STENCIL_STENCIL_MULTIPLIER_H
 
-#include "stencilSupports.h"
+#include "symbolicTable.h"
 
 namespace OpenSubdivHex::FarExt::internal {
 
@@ -32,6 +32,7 @@ struct SpareStencils {
 
     /// Takes memory for all rows, which have these supports, and says where they are to be.
     StencilPlaces<REAL> Place(std::vector<Support> const &supports);
+    REAL const *GetWeights(Index row) const { return weights.data() + ~offsets[row]; }
 
     Buffer<Index> offsets;
     Buffer<REAL> weights;
@@ -91,6 +92,24 @@ private:
     StencilPlaces<REAL> const *_pStencils;
     StencilPlaces<REAL> const _stencils;
 };
+
+/// \brief Makes the stencils of a table's levels, each of those of the level before.
+///
+/// \param place  place(level) takes memory for the rows of a level, which it may drop when it is asked for
+///               that of the next but one
+template <typename REAL, typename PLACE>
+void FillStencils(SymbolicTable const &symbolic, PLACE place) {
+    StencilPlan const &plan = symbolic.GetPlan();
+    StencilPlaces<REAL> pPlaces{};
+    for (int level = plan.firstBuilt; level <= plan.lastLevel; ++level) {
+        StencilPlaces<REAL> const places = place(level);
+        StencilMultiplier<REAL>(symbolic.GetRows(level), symbolic.GetParentSupports(level),
+                                symbolic.GetSupports(level),
+                                plan.HasParentStencils(level) ? &pPlaces : nullptr, places)
+            .Fill(symbolic.GetNumSources(level));
+        pPlaces = places;
+    }
+}
 
 extern template struct SpareStencils<float>;
 extern template struct SpareStencils<double>;

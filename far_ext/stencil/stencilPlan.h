@@ -22,8 +22,7 @@ struct StencilPlan {
     }
     /// What a stencil is made for, and what stencils refer to.
     Index GetNumVertices(int level) const {
-        return channel >= 0 && level == 0 ? hierarchy.channels[channel].numValues
-                                          : GetLevel(level).numVertices;
+        return level == 0 ? hierarchy.GetNumControlPoints(channel) : GetLevel(level).numVertices;
     }
     /// What vertices of a level stand for as sources; of values, those that the user has.
     std::vector<Index> GetSources(int level, std::vector<Index> verts) const;

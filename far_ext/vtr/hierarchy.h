@@ -42,6 +42,10 @@ struct Hierarchy {
     MeshLevels const &GetMesh(int channel) const {
         return channel < 0 ? mesh : channels[std::size_t(channel)].values;
     }
+    /// The vertices of level 0, or the values that the user has.
+    Far::Index GetNumControlPoints(int channel) const {
+        return channel < 0 ? mesh.levels[0].numVertices : channels[std::size_t(channel)].numValues;
+    }
 };
 
 } // namespace OpenSubdivHex::FarExt::internal

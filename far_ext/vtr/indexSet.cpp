@@ -66,8 +66,17 @@ Index IndexNumbering::operator()(Index index) const {
 }
 
 void SortUnique(std::vector<Index> &indices) {
-    std::sort(indices.begin(), indices.end());
+    if (!std::is_sorted(indices.begin(), indices.end())) {
+        std::sort(indices.begin(), indices.end());
+    }
     indices.erase(std::unique(indices.begin(), indices.end()), indices.end());
+}
+
+void InsertUnique(std::vector<Index> &indices, Index index) {
+    auto const place = std::lower_bound(indices.begin(), indices.end(), index);
+    if (place == indices.end() || *place != index) {
+        indices.insert(place, index);
+    }
 }
 
 void SortUnique(std::vector<Index> &indices, Index end) {

@@ -116,7 +116,9 @@ private:
 
 /// Sorts indices and removes repeated ones.
 OPENSUBDIVHEX_API void SortUnique(std::vector<Far::Index> &indices);
-/// The same of many indices, all below \p end.
+/// Adds an index to ascending ones that do not repeat, unless it is there.
+OPENSUBDIVHEX_API void InsertUnique(std::vector<Far::Index> &indices, Far::Index index);
+/// As SortUnique() of many indices, all below \p end.
 void SortUnique(std::vector<Far::Index> &indices, Far::Index end);
 
 } // namespace OpenSubdivHex::FarExt::internal

@@ -3,6 +3,7 @@
 #define OPENSUBDIVHEX_FAR_EXT_VTR_LEVEL_H
 
 #include "buffer.h"
+#include "kept.h"
 
 #include "far_ext/indexing.h"
 #include "far_ext/mask.h"
@@ -13,12 +14,12 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
-#include <memory>
 #include <vector>
 
 namespace OpenSubdivHex::FarExt::internal {
 
 class RefinementRules;
+enum class VertexMark : unsigned char;
 
 /// \brief How a boundary edge refines.  Stands in Level::edgeFaces in place of the second
 /// face.  The phases A and B of sharp boundaries alternate as INDEXING.md shows.
@@ -377,8 +378,9 @@ struct Level {
     std::vector<IrregularVertex> irregularVerts;   ///< ascending
     std::vector<IrregularCorner> irregularCorners; ///< ascending; one for a corner at most
 
-    /// See GetRules(), which makes them; by Interpolation.
-    mutable std::shared_ptr<RefinementRules const> rules[2];
+    // Made when they are first asked for.
+    Kept<RefinementRules> rules[2];            ///< by Interpolation; see GetRules()
+    Kept<std::vector<VertexMark>> vertexMarks; ///< see GetVertexMarks()
 };
 
 } // namespace OpenSubdivHex::FarExt::internal

@@ -24,7 +24,10 @@ void BeginRefinement(Level const &parent, LevelSizes const &sizes, bool fullTopo
     child.numFFaceCorners = parent.numCorners;
     child.partedVerts.clear();
     child.hasFullTopology = fullTopology;
-    std::fill(std::begin(child.rules), std::end(child.rules), nullptr);
+    for (auto &rules : child.rules) {
+        rules.Clear();
+    }
+    child.vertexMarks.Clear();
 }
 
 void EndRefinement(TagOptions options, Refinement const &refinement, Level &child) {

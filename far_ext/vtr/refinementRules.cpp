@@ -3,6 +3,7 @@
 
 #include "indexSet.h"
 
+#include <cstddef>
 #include <cstring>
 #include <unordered_map>
 
@@ -22,6 +23,25 @@ std::uint32_t getBits(float value) {
     return bits;
 }
 
+// Masks around irregular vertices, each computed once.
+class IrregularMasks {
+public:
+    explicit IrregularMasks(int numSteps) : _numSteps(numSteps) {}
+
+    IrregularVertexMask const &Get(int numFaces, FacesAround facesAround = FacesAround::Others) {
+        int const key = numFaces * kNumFacesAround + int(facesAround);
+        auto const [found, isNew] = _masks.try_emplace(key);
+        if (isNew) {
+            found->second = ComputeIrregularVertexMask(numFaces, _numSteps, facesAround);
+        }
+        return found->second;
+    }
+
+private:
+    int const _numSteps;
+    std::unordered_map<int, IrregularVertexMask> _masks;
+};
+
 // What the rule of a face depends on.  Equal ones have equal rules.
 struct FaceTags {
     Index firstCorner;
@@ -37,18 +57,17 @@ struct FaceTags {
         if (isHalf || other.isHalf) {
             return isHalf && other.isHalf;
         }
-        auto const isSameCorner = [&](auto const &x, auto const &y) {
-            return x.corner - firstCorner == y.corner - other.firstCorner && x.weight == y.weight;
-        };
         return size == other.size && diagonal == other.diagonal &&
                std::equal(sectors, endSectors, other.sectors, other.endSectors,
                           [&](SectorCorner const &x, SectorCorner const &y) {
-                              return isSameCorner(x, y) && x.sectorSize == y.sectorSize;
+                              return x.corner - firstCorner == y.corner - other.firstCorner &&
+                                     x.weight == y.weight && x.sectorSize == y.sectorSize;
                           }) &&
                std::equal(irregular, endIrregular, other.irregular, other.endIrregular,
                           [&](IrregularCorner const &x, IrregularCorner const &y) {
-                              return isSameCorner(x, y) && x.kind == y.kind &&
-                                     x.numFaces == y.numFaces && x.facesAround == y.facesAround;
+                              constexpr std::size_t kFirst = offsetof(IrregularCorner, numFaces);
+                              return x.corner - firstCorner == y.corner - other.firstCorner &&
+                                     std::memcmp(&x.numFaces, &y.numFaces, sizeof x - kFirst) == 0;
                           });
     }
 
@@ -58,22 +77,22 @@ struct FaceTags {
                 return 0;
             }
             constexpr std::uint64_t kFactor = 0x9e3779b97f4a7c15u; // of Fibonacci hashing
-            std::uint64_t hash = 0;
-            auto const add = [&hash](std::uint32_t high, std::uint32_t low) {
-                hash = (hash ^ (std::uint64_t(high) << 32 | low)) * kFactor;
-                hash ^= hash >> 32;
+            std::uint64_t hash = std::uint64_t(tags.size);
+            auto const add = [&hash](float weight, Index rest) {
+                std::uint64_t const high = getBits(weight);
+                hash = (hash ^ (high << 32 | std::uint32_t(rest))) * kFactor;
             };
-            add(std::uint32_t(tags.size), getBits(tags.diagonal));
+            add(tags.diagonal, 0);
             for (SectorCorner const *sector = tags.sectors; sector != tags.endSectors; ++sector) {
-                add(getBits(sector->weight), getBits(sector->sectorSize));
-                add(std::uint32_t(sector->corner - tags.firstCorner), 0);
+                add(sector->weight, sector->corner - tags.firstCorner);
+                add(sector->sectorSize, 0);
             }
             for (IrregularCorner const *corner = tags.irregular; corner != tags.endIrregular;
                  ++corner) {
-                add(getBits(corner->weight), std::uint32_t(corner->numFaces));
-                add(std::uint32_t(corner->corner - tags.firstCorner),
-                    std::uint32_t(corner->kind) << 16 | std::uint32_t(corner->facesAround));
+                add(corner->weight, (corner->corner - tags.firstCorner) ^ corner->kind << 8 ^
+                                        int(corner->facesAround) << 12 ^ corner->numFaces << 16);
             }
+            hash ^= hash >> 32;
             return std::size_t(hash);
         }
     };
@@ -101,23 +120,36 @@ void RefinementRules::makeCirculantRules() {
     }
 }
 
+void RefinementRules::endFaceRuns() {
+    _faceRuns.push_back({_level.numFaces, kCirculant});
+    if (_faceRuns.size() == 2) {
+        return;
+    }
+    _runOfBlock.reserve(std::size_t(_level.numFaces / kBlock) + 1);
+    Index run = 0;
+    for (Index face = 0; face < _level.numFaces; face += kBlock) {
+        while (_faceRuns[std::size_t(run) + 1].begin <= face) {
+            ++run;
+        }
+        _runOfBlock.push_back(run);
+    }
+}
+
 // Sharp vertices have their rules; in an irregular vertex, the smooth one has the share that these leave.
 void RefinementRules::makeRuledVertices(bool hasIrregular) {
+    _ruledVertices.reserve(_level.sharpVerts.size() +
+                           (hasIrregular ? _level.irregularVerts.size() : 0));
     auto nextIrregular = _level.irregularVerts.begin();
     auto const endIrregular = hasIrregular ? _level.irregularVerts.end() : nextIrregular;
-    std::unordered_map<int, VertexVertexMask> irregularMasks; // by number of faces
+    IrregularMasks masks(_level.numHexagonalSteps);
     auto const addIrregular = [&](IrregularVertex const &irregular, double smoothShare,
                                   VertexRule &rule) {
         int const numFaces = _level.GetNumVertexFaces(irregular.vert);
-        auto const [found, isNew] = irregularMasks.try_emplace(numFaces);
-        if (isNew) {
-            found->second = ComputeIrregularVertexMask(numFaces, _level.numHexagonalSteps).vertex;
-        }
+        VertexVertexMask const &mask = masks.Get(numFaces).vertex;
         VertexVertexMask const plain = GetPlainVertexMask(numFaces);
         double const share = irregular.weight * smoothShare;
-        rule.faceWeight += share * (found->second.faceWeight - plain.faceWeight);
-        rule.weights[rule.numSources - 1] +=
-            share * (found->second.vertexWeight - plain.vertexWeight);
+        rule.faceWeight += share * (mask.faceWeight - plain.faceWeight);
+        rule.weights[rule.numSources - 1] += share * (mask.vertexWeight - plain.vertexWeight);
     };
     auto const addIrregularBefore = [&](Index vert) {
         for (; nextIrregular != endIrregular && nextIrregular->vert < vert; ++nextIrregular) {
@@ -156,25 +188,30 @@ public:
     DenseRuleMaker(RefinementRules &rules, FaceMask faceMask)
         : _rules(rules), _level(rules._level), _faceMask(faceMask),
           _isVertex(rules._interpolation == Interpolation::Vertex),
-          _quadMask(ComputeQuadMask(_level.numHexagonalSteps)) {
+          _masks(_level.numHexagonalSteps), _quadMask(ComputeQuadMask(_level.numHexagonalSteps)) {
         ComputeHalfFaceVertexMask(faceMask, rules._interpolation, &_halfFaceWeights[0][0]);
     }
 
     void Make() {
-        std::vector<Index> const faces = findFaces();
-        if (faces.empty()) {
-            return;
-        }
-        _rules._ruleOfFace.assign(std::size_t(_level.numFaces), kCirculant);
-        _rules._denseFaces.reserve(faces.size());
+        std::vector<Index> const sharpFaces = findSharpFaces();
+        auto nextSharp = sharpFaces.begin();
+        IrregularCorner const *const endCorners =
+            _level.irregularCorners.data() + _level.irregularCorners.size();
+        IrregularCorner const *nextCorner = _isVertex ? _level.irregularCorners.data() : endCorners;
         std::unordered_map<FaceTags, int, FaceTags::Hash> ruleOfTags;
+        FaceTags before = {}; // of the last face: those that follow one another are mostly alike
         FaceTags tags = {};
         tags.endSectors = _level.sectorCorners.data();
         tags.endIrregular = _level.irregularCorners.data();
-        FaceTags before = {}; // of the last face: those that follow one another are mostly alike
         int rule = kCirculant;
-        for (Index const face : faces) {
+        while (nextSharp != sharpFaces.end() || nextCorner != endCorners) {
+            Index face = nextSharp != sharpFaces.end() ? *nextSharp : _level.numFaces;
+            if (nextCorner != endCorners) {
+                face = std::min(face, _level.FindFaceOfCorner(nextCorner->corner));
+            }
+            nextSharp += nextSharp != sharpFaces.end() && *nextSharp == face;
             readTags(face, tags);
+            nextCorner = std::max(nextCorner, tags.endIrregular);
             if (!(tags == before)) {
                 auto const [found, isNew] = ruleOfTags.try_emplace(tags, _rules.GetNumDenseRules());
                 rule = found->second;
@@ -183,29 +220,34 @@ public:
                 }
             }
             before = tags;
-            _rules._ruleOfFace[std::size_t(face)] = rule;
-            _rules._denseFaces.push_back({face, rule});
+            addFace(face, rule);
+        }
+        if (_endDense < _level.numFaces) {
+            _rules._faceRuns.push_back({_endDense, kCirculant});
         }
     }
 
 private:
-    std::vector<Index> findFaces() const;
+    std::vector<Index> findSharpFaces() const;
+    void addFace(Index face, int rule);
     void readTags(Index face, FaceTags &tags) const;
     void addRule(FaceTags const &tags);
     void addRow(std::vector<double> const &row);
     void addIrregularWeights(IrregularCorner const &irregular, int corner,
-                             std::vector<double> &row) const;
+                             std::vector<double> &row);
 
     RefinementRules &_rules;
     Level const &_level;
     FaceMask _faceMask;
     bool _isVertex;
+    IrregularMasks _masks;
     QuadMask _quadMask;
     double _halfFaceWeights[kTrapezoid][kTrapezoid];
+    Index _endDense = 0; // behind the last face with a dense rule
 };
 
-// Ascending.
-std::vector<Index> RefinementRules::DenseRuleMaker::findFaces() const {
+// Those with anything but irregular corners, ascending.
+std::vector<Index> RefinementRules::DenseRuleMaker::findSharpFaces() const {
     std::vector<Index> faces(_level.halfFaces.begin(), _level.halfFaces.end());
     if (!_isVertex) {
         return faces;
@@ -219,17 +261,19 @@ std::vector<Index> RefinementRules::DenseRuleMaker::findFaces() const {
         faces.push_back(_level.FindFaceOfCorner(sector.corner));
     }
     SortUnique(faces);
-    auto const numSharp = std::ptrdiff_t(faces.size());
-    Index end = 0; // of the last face with irregular corners
-    for (IrregularCorner const &irregular : _level.irregularCorners) {
-        if (irregular.corner >= end) {
-            faces.push_back(_level.FindFaceOfCorner(irregular.corner));
-            end = _level.faceFirstCorner[faces.back() + 1];
-        }
-    }
-    std::inplace_merge(faces.begin(), faces.begin() + numSharp, faces.end());
-    faces.erase(std::unique(faces.begin(), faces.end()), faces.end());
     return faces;
+}
+
+// Goes on with the last run or begins another, behind one of circulant faces.
+void RefinementRules::DenseRuleMaker::addFace(Index face, int rule) {
+    std::vector<FaceRun> &runs = _rules._faceRuns;
+    if (_endDense < face) {
+        runs.push_back({_endDense, kCirculant});
+    }
+    if (_endDense < face || runs.empty() || runs.back().rule != rule) {
+        runs.push_back({face, rule});
+    }
+    _endDense = face + 1;
 }
 
 // Corners are read on from those of the faces before.
@@ -305,18 +349,15 @@ void RefinementRules::DenseRuleMaker::addRule(FaceTags const &tags) {
 
 // The corner is number \p corner of its face, whose weights these are so far.
 void RefinementRules::DenseRuleMaker::addIrregularWeights(IrregularCorner const &irregular,
-                                                          int corner,
-                                                          std::vector<double> &row) const {
+                                                          int corner, std::vector<double> &row) {
     using Kind = IrregularCorner::Kind;
     Kind const kind = irregular.kind;
     double const *mask = nullptr;
-    IrregularVertexMask ofVertex;
     if (IrregularCorner::IsAtQuad(kind)) {
         bool const isAtEdge = kind == Kind::kAlongQuad || kind == Kind::kBehindQuad;
         mask = _quadMask.beside[isAtEdge ? 0 : 1];
     } else {
-        ofVertex = ComputeIrregularVertexMask(irregular.numFaces, _level.numHexagonalSteps,
-                                              irregular.facesAround);
+        IrregularVertexMask const &ofVertex = _masks.Get(irregular.numFaces, irregular.facesAround);
         mask = kind == Kind::kAtVertex ? ofVertex.atVertex : ofVertex.atNeighbor;
     }
     bool const isBackwards =
@@ -341,22 +382,19 @@ RefinementRules::RefinementRules(Level const &parent, HexSchemeOptions schemeOpt
     }
     if (isHexagonal && parent.HasFeatures()) {
         DenseRuleMaker(*this, _faceMask).Make();
+    } else {
+        _faceRuns.push_back({0, kCirculant});
     }
+    endFaceRuns();
 }
 
 std::shared_ptr<RefinementRules const> GetRules(Level const &parent, HexSchemeOptions schemeOptions,
                                                 Interpolation interpolation) {
-    std::shared_ptr<RefinementRules const> &kept = parent.rules[std::size_t(interpolation)];
-    std::shared_ptr<RefinementRules const> rules = std::atomic_load(&kept);
-    if (rules && rules->AreThoseOf(schemeOptions)) {
-        return rules;
-    }
-    auto const made = std::make_shared<RefinementRules const>(parent, schemeOptions, interpolation);
-    // Of those that several threads have made, all get the first.
-    return rules || std::atomic_compare_exchange_strong(
-                        &kept, &rules, std::shared_ptr<RefinementRules const>(made))
-               ? made
-               : rules;
+    auto const make = [&] {
+        return std::make_shared<RefinementRules const>(parent, schemeOptions, interpolation);
+    };
+    auto const rules = parent.rules[std::size_t(interpolation)].Get(make);
+    return rules->AreThoseOf(schemeOptions) ? rules : make();
 }
 
 } // namespace OpenSubdivHex::FarExt::internal

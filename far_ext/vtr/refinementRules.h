@@ -51,16 +51,16 @@ struct VertexRule {
 /// F-vertices and V-vertices.  RefinementRows adds the components that are made.
 ///
 /// Tags of the level and the options of the scheme are turned into weights here, and nowhere else.  Faces
-/// have the circulant rule of their size but for those of GetDenseFaces(), and vertices the rule of one
-/// source of their number of faces but for those of GetRuledVertices().
+/// have the circulant rule of their size or a dense one, in runs, and vertices the rule of one source of their
+/// number of faces but for those of GetRuledVertices().
 class OPENSUBDIVHEX_API RefinementRules {
 public:
     using Index = Far::Index;
 
-    /// A face with a dense rule, and the number of that.
-    struct DenseFace {
-        Index face;
-        int rule;
+    /// Faces that follow one another, up to the begin of the next run, all with one dense rule or with none.
+    struct FaceRun {
+        Index begin;
+        int rule; ///< the number of the dense rule, or kCirculant
     };
     /// A vertex with a rule of its own.
     struct RuledVertex {
@@ -82,20 +82,36 @@ public:
     /// @name Faces
     /// @{
     FaceRule GetFaceRule(Index face) const {
-        int const rule = FindDenseRule(face);
+        int const rule = FindRun(face)->rule;
         return rule == kCirculant ? GetCirculantRule(_level.GetFaceSize(face)) : GetDenseRule(rule);
     }
-    /// The number of the dense rule of a face; kCirculant where it has none.
-    int FindDenseRule(Index face) const {
-        return _ruleOfFace.empty() ? kCirculant : _ruleOfFace[std::size_t(face)];
-    }
     static constexpr int kCirculant = -1;
+    /// The run that a face is in.  Behind the last one stands another, which begins at the number of faces.
+    FaceRun const *FindRun(Index face) const {
+        FaceRun const *run = _faceRuns.data();
+        if (!_runOfBlock.empty()) {
+            for (run += _runOfBlock[std::size_t(face / kBlock)]; run[1].begin <= face; ++run) {
+            }
+        }
+        return run;
+    }
+    /// Calls function(face, rule) for the faces with dense rules, from \p begin to \p end - 1.
+    template <typename FUNCTION>
+    void ForEachDenseFace(Index begin, Index end, FUNCTION function) const {
+        if (begin == end) {
+            return;
+        }
+        for (FaceRun const *run = FindRun(begin); run->begin < end; ++run) {
+            Index const behind = run->rule == kCirculant ? begin : std::min(end, run[1].begin);
+            for (Index face = std::max(begin, run->begin); face < behind; ++face) {
+                function(face, run->rule);
+            }
+        }
+    }
     /// The rule of faces of a size that the level has.
     FaceRule GetCirculantRule(int size) const {
         return {size, _weights.data() + _circulants[std::size_t(size)], nullptr};
     }
-    /// All faces with dense rules, ascending.
-    std::vector<DenseFace> const &GetDenseFaces() const { return _denseFaces; }
     int GetNumDenseRules() const { return int(_denseRules.size()); }
     FaceRule GetDenseRule(int rule) const {
         auto const [size, firstRow] = _denseRules[std::size_t(rule)];
@@ -120,6 +136,7 @@ public:
 
 private:
     static constexpr int kNumKept = 8;
+    static constexpr Index kBlock = 16; // of faces
     struct DenseRule {
         int size;
         std::size_t firstRow;
@@ -140,6 +157,7 @@ private:
         return found->vert == vert ? &*found : nullptr;
     }
     void makeCirculantRules();
+    void endFaceRuns();
     void makeRuledVertices(bool hasIrregular);
 
     Level const &_level;
@@ -153,8 +171,8 @@ private:
     std::vector<std::size_t> _circulants; ///< by face size, position in _weights
     std::vector<DenseRule> _denseRules;
     std::vector<std::size_t> _rows; ///< of dense rules, positions in _weights
-    std::vector<DenseFace> _denseFaces;
-    std::vector<int> _ruleOfFace; ///< empty where all are circulant
+    std::vector<FaceRun> _faceRuns;
+    std::vector<Index> _runOfBlock; ///< of the first face of each; empty where there is one run
 };
 
 /// \brief The rules of the refinement of \p parent, which keeps them: they are made once for all who use them,

@@ -250,34 +250,30 @@ bool Maker::isCirculant(FaceRule const &rule, int corner) const {
 // Those without any corner that a run would make.
 std::vector<Index> Maker::findFacesInNoRun() const {
     std::vector<Index> faces;
-    for (RefinementRules::DenseFace const &dense : _rules.GetDenseFaces()) {
-        FaceRule const rule = _rules.GetDenseRule(dense.rule);
+    _rules.ForEachDenseFace(0, _level.numFaces, [&](Index face, int number) {
+        FaceRule const rule = _rules.GetDenseRule(number);
         bool isInRun = false;
         for (int i = 0; i < rule.GetSize(); ++i) {
             isInRun = isInRun || isCirculant(rule, i);
         }
         if (!isInRun) {
-            faces.push_back(dense.face);
+            faces.push_back(face);
         }
-    }
+    });
     return faces;
 }
 
 // Behind runs, which make all F-vertices of their faces: these few again.
 void Maker::listDenseCorners(Range const &run) {
-    std::vector<RefinementRules::DenseFace> const &faces = _rules.GetDenseFaces();
-    auto next = std::lower_bound(
-        faces.begin(), faces.end(), run.begin,
-        [](RefinementRules::DenseFace const &dense, Index face) { return dense.face < face; });
-    for (; next != faces.end() && next->face < run.end; ++next) {
-        FaceRule const rule = _rules.GetDenseRule(next->rule);
-        std::uint32_t const firstIndex = takeIndicesOf(next->face);
+    _rules.ForEachDenseFace(run.begin, run.end, [&](Index face, int number) {
+        FaceRule const rule = _rules.GetDenseRule(number);
+        std::uint32_t const firstIndex = takeIndicesOf(face);
         for (int i = 0; i < rule.GetSize(); ++i) {
             if (!isCirculant(rule, i)) {
-                listCorner(next->face, i, firstIndex);
+                listCorner(face, i, firstIndex);
             }
         }
-    }
+    });
 }
 
 // Position of the vertices of a face.

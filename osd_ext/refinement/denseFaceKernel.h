@@ -9,11 +9,11 @@ namespace OpenSubdivHex::OsdExt::internal {
 /// \brief Hexagons that follow one another, of which some have dense rules and the others the plain mask.
 struct DenseFaceTask {
     PlainFaceMask const *plainMask;
-    DenseFaceMask const *masks;
-    int const *maskOfFace; ///< of faces with dense rules
-    DenseRun const *dense; ///< the first that ends behind begin
-    Far::Index begin;      ///< their first corner
+    DenseFaceMask const *masks;                             ///< by rule
+    FarExt::internal::RefinementRules::FaceRun const *runs; ///< from that of the first face on
+    Far::Index begin;                                       ///< the first face
     Far::Index end;
+    Far::Index firstCorner;  ///< its first corner
     Far::Index const *verts; ///< by corner
     Elements<float const> src;
     Elements<float> dst; ///< F-vertices, by corner

@@ -96,17 +96,22 @@ void refineDenseFaces(DenseFaceTask const &task) {
     Elements<float const> const src = task.src;
     Elements<float> const dst = task.dst;
     Far::Index const *const verts = task.verts;
-    std::ptrdiff_t corner = task.begin;
-    for (DenseRun const *run = task.dense; corner != task.end; ++run) {
-        std::ptrdiff_t const begin = std::clamp<std::ptrdiff_t>(run->begin, corner, task.end);
-        refineUnrolledFaces<ACCESS, kSize, HAS_OPPOSITE>(plain, src, verts, dst, corner, begin);
-        corner = begin;
-        int const *mask = task.maskOfFace + run->firstFace + (corner - run->begin) / kSize;
-        std::ptrdiff_t const end = std::min(run->end, task.end);
+    std::ptrdiff_t corner = task.firstCorner;
+    Far::Index face = task.begin;
+    for (auto const *run = task.runs; face < task.end; ++run) {
+        Far::Index const endFace = std::min(run[1].begin, task.end);
+        std::ptrdiff_t const end = corner + std::ptrdiff_t(endFace - face) * kSize;
+        face = endFace;
+        if (run->rule == FarExt::internal::RefinementRules::kCirculant) {
+            refineUnrolledFaces<ACCESS, kSize, HAS_OPPOSITE>(plain, src, verts, dst, corner, end);
+            corner = end;
+            continue;
+        }
+        DenseFaceMask const &mask = task.masks[run->rule];
         for (; corner < end; corner += kSize) {
             prefetchAhead(verts + corner);
             prefetchAhead(ACCESS::At(dst, corner));
-            refineDenseFace<ACCESS, ROWS>(task.masks[*mask++], src, dst, verts + corner, corner);
+            refineDenseFace<ACCESS, ROWS>(mask, src, dst, verts + corner, corner);
         }
     }
 }

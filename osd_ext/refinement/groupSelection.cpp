@@ -122,15 +122,9 @@ Marks findNeededFaces(PreparedRefinement const &prepared, Refinement const &refi
 
 void selectFaces(PreparedRefinement const &prepared, Marks const &isNeeded,
                  RefinementGroups &result) {
-    std::vector<DenseRun> const &dense = prepared.denseRuns;
-    result.faceRuns = selectItems(prepared.faceRuns, [&](FaceRun const &run, auto add) {
+    result.faceRuns = selectItems(prepared.faceRuns, [&](IndexRun const &run, auto add) {
         auto const isFaceNeeded = [&](Index face) { return isMarked(isNeeded, face); };
-        forEachPart(run, isFaceNeeded, [&](Index begin, Index end) {
-            auto const first = std::upper_bound(
-                dense.begin(), dense.end(), prepared.parent->faceFirstCorner[std::size_t(begin)],
-                [](Index corner, DenseRun const &a) { return corner < a.end; });
-            add(FaceRun{begin, end, Index(first - dense.begin())});
-        });
+        forEachPart(run, isFaceNeeded, [&](Index begin, Index end) { add(IndexRun{begin, end}); });
     });
     result.weightedFaces =
         selectItems(prepared.weightedFaces, [&](WeightedFace const &face, auto add) {

@@ -15,6 +15,7 @@ namespace OpenSubdivHex::OsdExt::internal {
 using Far::Index;
 using FarExt::internal::FaceRule;
 using FarExt::internal::ForEachRun;
+using FarExt::internal::InsertUnique;
 using FarExt::internal::Level;
 using FarExt::internal::ParallelFor;
 using FarExt::internal::Refinement;
@@ -25,6 +26,7 @@ using FarExt::internal::VertexRule;
 namespace {
 
 constexpr int kMaxUnrolledSize = 6;
+constexpr int kFVertexFaces = 3; ///< around an F-vertex, at most
 /// Corners of a tile in the last level that is refined, a sixteenth of the level's between these
 /// bounds: 1.5 MiB of new points of length 3 at most.
 constexpr Index kMinTileCorners = 32768;
@@ -93,72 +95,21 @@ private:
     int _size = 0; // of the faces of the last run
 };
 
-// Lists the faces with dense rules of runs of hexagons, from first to last.
-class DenseFaceLister {
-public:
-    DenseFaceLister(Level const &level, RefinementRules const &rules, PreparedRefinement &prepared)
-        : _firstCorners(level.faceFirstCorner.data()), _rules(rules),
-          _next(rules.GetDenseFaces().begin()),
-          _maskOfRule(std::size_t(rules.GetNumDenseRules()), -1), _prepared(prepared) {
-        prepared.maskOfDenseFace.reserve(rules.GetDenseFaces().size());
-    }
-
-    void Add(Index begin, Index end) {
-        auto const endFaces = _rules.GetDenseFaces().end();
-        while (_next != endFaces && _next->face < begin) {
-            ++_next;
+// The masks of hexagons with dense rules, by the number of the rule.
+std::vector<DenseFaceMask> makeDenseMasks(RefinementRules const &rules) {
+    std::vector<DenseFaceMask> masks(std::size_t(rules.GetNumDenseRules()));
+    for (std::size_t number = 0; number < masks.size(); ++number) {
+        FaceRule const rule = rules.GetDenseRule(int(number));
+        if (rule.GetSize() != DenseFaceMask::kSize) {
+            continue;
         }
-        std::vector<DenseRun> &runs = _prepared.denseRuns;
-        std::size_t const numBefore = runs.size();
-        for (; _next != endFaces && _next->face < end; ++_next) {
-            Index const corner = _firstCorners[_next->face];
-            Index const endCorner = _firstCorners[_next->face + 1];
-            if (runs.size() > numBefore && runs.back().end == corner) {
-                runs.back().end = endCorner;
-            } else {
-                runs.push_back({corner, endCorner, Index(_prepared.maskOfDenseFace.size())});
-            }
-            _prepared.maskOfDenseFace.push_back(findMask(_next->rule));
-        }
-    }
-
-private:
-    int findMask(int rule) {
-        int &number = _maskOfRule[std::size_t(rule)];
-        if (number < 0) {
-            number = int(_prepared.denseMasks.size());
-            DenseFaceMask &mask = _prepared.denseMasks.emplace_back();
-            FaceRule const faceRule = _rules.GetDenseRule(rule);
-            for (int corner = 0; corner < DenseFaceMask::kSize; ++corner) {
-                for (int vert = 0; vert < DenseFaceMask::kSize; ++vert) {
-                    mask.weights[vert][corner] = Spread(float(faceRule.GetRow(corner)[vert]));
-                }
+        for (int corner = 0; corner < DenseFaceMask::kSize; ++corner) {
+            for (int vert = 0; vert < DenseFaceMask::kSize; ++vert) {
+                masks[number].weights[vert][corner] = Spread(float(rule.GetRow(corner)[vert]));
             }
         }
-        return number;
     }
-
-    Index const *const _firstCorners;
-    RefinementRules const &_rules;
-    std::vector<RefinementRules::DenseFace>::const_iterator _next;
-    std::vector<int> _maskOfRule;
-    PreparedRefinement &_prepared;
-};
-
-// The runs of all groups, which know their faces with dense rules.
-Groups<FaceRun> addDense(Level const &level, Groups<IndexRun> const &runs,
-                         std::vector<DenseRun> const &dense) {
-    Groups<FaceRun> result;
-    result.firsts = runs.firsts;
-    result.items.Resize(runs.items.size());
-    std::transform(
-        runs.items.begin(), runs.items.end(), result.items.data(), [&](IndexRun const &run) {
-            auto const first = std::lower_bound(
-                dense.begin(), dense.end(), level.faceFirstCorner[std::size_t(run.begin)],
-                [](DenseRun const &a, Index corner) { return a.begin < corner; });
-            return FaceRun{run.begin, run.end, Index(first - dense.begin())};
-        });
-    return result;
+    return masks;
 }
 
 // Makes runs of the vertices of a group that follow one another.
@@ -217,19 +168,18 @@ private:
 // (see PreparedRefinement).
 std::vector<Index> findWeightedFaces(RefinementRules const &rules, Level const &parent) {
     std::vector<Index> faces;
-    for (RefinementRules::DenseFace const &dense : rules.GetDenseFaces()) {
-        if (parent.GetFaceSize(dense.face) != DenseFaceMask::kSize) {
-            faces.push_back(dense.face);
+    rules.ForEachDenseFace(0, parent.numFaces, [&](Index face, int rule) {
+        if (rules.GetDenseRule(rule).GetSize() != DenseFaceMask::kSize) {
+            faces.push_back(face);
         }
-    }
+    });
     if (parent.numVertices > 0) {
         for (Index const face : parent.GetVertexFaces(parent.numVertices - 1)) {
             if (parent.GetFaceSize(face) <= kMaxUnrolledSize) {
-                faces.push_back(face);
+                InsertUnique(faces, face);
             }
         }
     }
-    SortUnique(faces);
     return faces;
 }
 
@@ -244,14 +194,14 @@ std::vector<Index> findWeightedVertices(RefinementRules const &rules,
     }
     std::vector<Index> verts;
     if (refinement.child->numVVertices > 0) {
+        verts.reserve(rules.GetRuledVertices().size() + 2);
         for (RefinementRules::RuledVertex const &ruled : rules.GetRuledVertices()) {
             verts.push_back(ruled.vert);
         }
-        verts.push_back(parent.numVertices - 1);
+        InsertUnique(verts, parent.numVertices - 1);
         if (parent.numCorners > 0) {
-            verts.push_back(parent.faceVerts[parent.numCorners - 1]);
+            InsertUnique(verts, parent.faceVerts[parent.numCorners - 1]);
         }
-        SortUnique(verts);
     }
     return verts;
 }
@@ -266,7 +216,7 @@ public:
     std::size_t Find(Index face) {
         FaceRule const rule = _rules.GetFaceRule(face);
         // Of circulant rules, which are told by the size, negative numbers.
-        int const key = rule.IsCirculant() ? -rule.GetSize() : _rules.FindDenseRule(face);
+        int const key = rule.IsCirculant() ? -rule.GetSize() : _rules.FindRun(face)->rule;
         auto const [found, isNew] = _positions.try_emplace(key, _weights.size());
         if (isNew) {
             for (int corner = 0; corner < rule.GetSize(); ++corner) {
@@ -292,15 +242,11 @@ void makeFaces(RefinementRules const &rules, Level const &parent,
     std::vector<Group> groupOfWeighted;
     FaceWeightLister weights(rules, prepared.faceWeights);
     FaceRunMaker runs(parent);
-    DenseFaceLister dense(parent, rules, prepared);
     for (TileMap::FaceRun const &run : tileMap.GetFaceRuns()) {
         Group const group = groupOfTile[run.tile];
         ForEachRun(
             run.begin, run.end, indices,
-            [&](Index begin, Index end, Index) {
-                runs.Add(begin, end, run.size, group);
-                dense.Add(begin, end);
-            },
+            [&](Index begin, Index end, Index) { runs.Add(begin, end, run.size, group); },
             [&](Index face, Index) {
                 Far::ConstIndexArray const verts = parent.GetFaceVertices(face);
                 weighted.push_back({parent.faceFirstCorner[std::size_t(face)], verts.size(),
@@ -309,8 +255,7 @@ void makeFaces(RefinementRules const &rules, Level const &parent,
             });
     }
     prepared.weightedFaces = makeGroups(weighted, groupOfWeighted, prepared.numTiles);
-    prepared.denseRuns.push_back({parent.numCorners, parent.numCorners, 0});
-    prepared.faceRuns = addDense(parent, runs.Take(prepared.numTiles), prepared.denseRuns);
+    prepared.faceRuns = runs.Take(prepared.numTiles);
 }
 
 WeightedVertex makeWeightedVertex(VertexRule const &rule, Refinement const &refinement,
@@ -505,9 +450,8 @@ private:
 
 PlainMasks makePlainMasks(RefinementRules const &rules, Level const &parent) {
     PlainMasks masks;
-    // F-vertices of a hexagonal refinement have three faces at most.
-    int maxValence = parent.isHexagonal ? 3 : 0;
-    Index const end = parent.isHexagonal ? parent.numVVertices : parent.numVertices;
+    int maxValence = kFVertexFaces;
+    Index const end = std::min(parent.numVertsOfAnyValence, parent.numVertices);
     for (Index vert = 0; vert < end; ++vert) {
         maxValence = std::max(maxValence, parent.GetNumVertexFaces(vert));
     }
@@ -584,18 +528,20 @@ int GetNumTiles(Level const &lastParent) {
 
 Index GetNumFFaces(Level const &level) { return level.isHexagonal ? level.numFFaces : 0; }
 
-void PrepareRefinement(RefinementRules const &rules,
+void PrepareRefinement(std::shared_ptr<RefinementRules const> const &rules,
                        std::vector<Refinement const *> const &refinements, TileMap const &tileMap,
                        PreparedRefinement &prepared) {
     Refinement const &refinement = *refinements.back();
     if (refinement.isTruncation) {
-        listVertices(refinement, rules.GetInterpolation(), prepared);
+        listVertices(refinement, rules->GetInterpolation(), prepared);
         return;
     }
     Level const &parent = *refinement.parent;
     std::size_t const numBefore = refinements.size() - 1;
     prepared.numVVertices = refinement.child->numVVertices;
-    prepared.masks = makePlainMasks(rules, parent);
+    prepared.rules = rules;
+    prepared.masks = makePlainMasks(*rules, parent);
+    prepared.denseMasks = makeDenseMasks(*rules);
     prepared.parent = &parent;
     prepared.before = numBefore > 0 ? refinements[numBefore - 1]->parent : nullptr;
     prepared.beforeThat = numBefore > 1 ? refinements[numBefore - 2]->parent : nullptr;
@@ -605,9 +551,9 @@ void PrepareRefinement(RefinementRules const &rules,
     for (int tile = 0; tile < tileMap.GetNumTiles(); ++tile) {
         groupOfTile[std::size_t(tile)] = tile * prepared.numTiles / tileMap.GetNumTiles();
     }
-    makeFaces(rules, parent, groupOfTile, tileMap, prepared);
+    makeFaces(*rules, parent, groupOfTile, tileMap, prepared);
 
-    VertexGrouper vertices(rules, refinement, groupOfTile, prepared);
+    VertexGrouper vertices(*rules, refinement, groupOfTile, prepared);
     vertices.AddFirstVertices(tileMap.GetFirstVertexRuns());
     std::vector<std::vector<TileMap::FaceRun>> const &fVertexRuns = tileMap.GetFVertexRuns();
     for (std::size_t i = 0; i < fVertexRuns.size(); ++i) {

@@ -8,6 +8,7 @@
 #include "osd_ext/simd/quad.h"
 
 #include <cstddef>
+#include <memory>
 #include <vector>
 
 namespace OpenSubdivHex::OsdExt::internal {
@@ -54,21 +55,6 @@ struct WeightedFace {
     int size;
     Far::Index const *verts;
     std::size_t firstWeight; ///< position in faceWeights
-};
-
-/// \brief Hexagons with dense rules that follow one another: their corners [begin, end).  It may reach
-/// beyond the run of faces that it is in, where not all faces are refined.
-struct DenseRun {
-    Far::Index begin;
-    Far::Index end;
-    Far::Index firstFace; ///< position in maskOfDenseFace
-};
-
-/// \brief Faces [begin, end) of one size: plain ones and, if they are hexagons, those with dense rules.
-struct FaceRun {
-    Far::Index begin;
-    Far::Index end;
-    Far::Index firstDense; ///< position in denseRuns of the first, or of one behind the run
 };
 
 /// \brief A vertex that a truncation makes, with sources of its own.
@@ -120,7 +106,7 @@ struct VertexRun {
 /// Vertices that are F-vertices of all corners of a face of the level before it, and of the level
 /// before that one, come in runs of such faces.
 struct RefinementGroups {
-    Groups<FaceRun> faceRuns;
+    Groups<IndexRun> faceRuns; ///< plain faces and hexagons with dense rules
     Groups<WeightedFace> weightedFaces;
 
     /// Of a truncation, all vertices that it makes, in tiles of some each.
@@ -148,6 +134,7 @@ struct RefinementGroups {
 /// plain, nor are its faces of 3 to 6 sides and the vertex whose F-vertex is the last: what plain
 /// faces and vertices read may be read in packets that reach into the element behind.
 struct PreparedRefinement : RefinementGroups {
+    std::shared_ptr<FarExt::internal::RefinementRules const> rules; ///< null for a truncation
     PlainMasks masks;
     Far::Index numVVertices = 0; ///< F-vertices follow in the child
     FarExt::internal::Level const *parent = nullptr;
@@ -156,11 +143,8 @@ struct PreparedRefinement : RefinementGroups {
     FarExt::internal::Level const *beforeThat = nullptr;
     int numTiles = 0;
 
-    std::vector<float> faceWeights; ///< of weighted faces, those of a rule once
-    std::vector<DenseFaceMask> denseMasks;
-    /// In the runs of plain faces, ascending; behind all, one that is in no run.
-    std::vector<DenseRun> denseRuns;
-    std::vector<int> maskOfDenseFace; ///< of each of their faces, in denseMasks
+    std::vector<float> faceWeights;        ///< of weighted faces, those of a rule once
+    std::vector<DenseFaceMask> denseMasks; ///< of hexagons, by the number of their rule
 
     // Of listed vertices.
     std::vector<Far::Index> listedSources;
@@ -184,7 +168,7 @@ int GetNumTiles(FarExt::internal::Level const &lastParent);
 /// \brief Prepares the last of \p refinements, which lead to it from level 0.
 ///
 /// \param tileMap  of its parent
-void PrepareRefinement(FarExt::internal::RefinementRules const &rules,
+void PrepareRefinement(std::shared_ptr<FarExt::internal::RefinementRules const> const &rules,
                        std::vector<FarExt::internal::Refinement const *> const &refinements,
                        TileMap const &tileMap, PreparedRefinement &prepared);
 

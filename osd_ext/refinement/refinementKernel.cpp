@@ -17,6 +17,7 @@ using FarExt::HexIndexing;
 using FarExt::kEFaceSideA;
 using FarExt::kEFaceSideB;
 using FarExt::internal::Level;
+using FarExt::internal::RefinementRules;
 
 namespace {
 
@@ -77,31 +78,31 @@ void refineWeightedFace(float const *weights, std::ptrdiff_t rowStride,
 
 // Hexagons of a run, some of which have dense rules.
 template <class ACCESS>
-void refineDenseFaces(RefinementTask const &task, PlainFaceMask const &faceMask, FaceRun const &run,
-                      Index begin, Index end) {
+void refineDenseFaces(RefinementTask const &task, PlainFaceMask const &faceMask,
+                      RefinementRules::FaceRun const *rules, IndexRun run) {
     PreparedRefinement const &refinement = *task.refinement;
+    Level const &parent = *refinement.parent;
     DenseFaceKernels const &kernels = GetDenseFaceKernels();
     DenseFaceKernels::Kernel const *const byWidth =
         ACCESS::kIsPacked ? kernels.packed : kernels.strided;
-    byWidth[ACCESS::kWidth - 1]({&faceMask, refinement.denseMasks.data(),
-                                 refinement.maskOfDenseFace.data(),
-                                 refinement.denseRuns.data() + run.firstDense, begin, end,
-                                 refinement.parent->faceVerts.data(), task.src, task.FVertices()});
+    byWidth[ACCESS::kWidth - 1]({&faceMask, refinement.denseMasks.data(), rules, run.begin, run.end,
+                                 parent.faceFirstCorner[std::size_t(run.begin)],
+                                 parent.faceVerts.data(), task.src, task.FVertices()});
 }
 
 // Faces of 3 to 6 sides.
 template <class ACCESS, int SIZE, bool HAS_OPPOSITE>
-void refineUnrolledFaces(RefinementTask const &task, PlainFaceMask const &faceMask,
-                         FaceRun const &run) {
+void refineUnrolledFaces(RefinementTask const &task, PlainFaceMask const &faceMask, IndexRun run) {
     PreparedRefinement const &refinement = *task.refinement;
     Level const &parent = *refinement.parent;
-    Index const begin = parent.faceFirstCorner[std::size_t(run.begin)];
-    Index const end = parent.faceFirstCorner[std::size_t(run.end)];
     if constexpr (SIZE == DenseFaceMask::kSize) {
-        if (refinement.denseRuns[std::size_t(run.firstDense)].begin < end) {
-            return refineDenseFaces<ACCESS>(task, faceMask, run, begin, end);
+        RefinementRules::FaceRun const *const rules = refinement.rules->FindRun(run.begin);
+        if (rules->rule != RefinementRules::kCirculant || rules[1].begin < run.end) {
+            return refineDenseFaces<ACCESS>(task, faceMask, rules, run);
         }
     }
+    Index const begin = parent.faceFirstCorner[std::size_t(run.begin)];
+    Index const end = parent.faceFirstCorner[std::size_t(run.end)];
     PlainFaceQuads const mask(faceMask);
     Elements<float const> const src = task.src;
     Elements<float> const dst = task.FVertices();
@@ -119,7 +120,7 @@ void refineUnrolledFaces(RefinementTask const &task, PlainFaceMask const &faceMa
 }
 
 template <class ACCESS>
-void refinePlainFaces(RefinementTask const &task, FaceRun const &run) {
+void refinePlainFaces(RefinementTask const &task, IndexRun run) {
     Level const &parent = *task.refinement->parent;
     Index const *const firstCorner = parent.faceFirstCorner.data() + run.begin;
     int const size = firstCorner[1] - firstCorner[0];
@@ -328,7 +329,7 @@ bool areHexagons(Level const &level, IndexRun run) {
 
 template <class ACCESS>
 struct FaceKernel {
-    static void Run(RefinementTask const &task, FaceRun const *begin, FaceRun const *end) {
+    static void Run(RefinementTask const &task, IndexRun const *begin, IndexRun const *end) {
         for (; begin < end; ++begin) {
             refinePlainFaces<ACCESS>(task, *begin);
         }

@@ -111,6 +111,53 @@ def test_kites_at_a_pyramid():
     assert table.evaluate([0], [[0.5, 0.5]], colors).shape == (1, 1)
 
 
+def make_cut_refiner(**options):
+    """Each face has values of its own."""
+    values = np.arange(4 * len(FACES))
+    refiner = osh.TopologyRefiner(FACES, face_mask="smooth", fvar_channels=[values], **options)
+    refiner.refine_uniform(LEVEL + 1, full_topology_in_last_level=True)
+    return refiner, RANDOM.uniform(0, 1, (len(values), 2))
+
+
+def test_values_of_channels_are_near_their_surfaces():
+    refiner, values = make_cut_refiner(fvar_linear_interpolation="none")
+    table = osh.PatchTable(refiner, LEVEL, generate_fvar_tables=True,
+                           generate_fvar_legacy_linear_patches=False)
+    assert table.num_fvar_channels == 1
+    assert table.patch_fvar_values().shape == (table.num_patches, 20)
+    points = table.make_fvar_points(values)
+    np.testing.assert_array_equal(points[len(values):], osh.CpuEvaluator.eval_stencils(
+        table.local_point_fvar_stencil_table(), values))
+    faces = np.repeat(np.arange(len(FACES)), 3)
+    uv = RANDOM.uniform(0, 1, (len(faces), 2))
+    patches, st = table.find_places(faces, uv)
+    actual = table.evaluate_fvar(patches, st, points)
+    factory = osh.SurfaceFactory(refiner)
+    expected = np.concatenate([
+        factory.face_varying_surface(int(face)).evaluate(place[None], values)
+        for face, place in zip(faces, uv)])
+    assert np.abs(actual - expected).max() < 1e-2
+
+
+def test_linear_channels_are_bilinear():
+    refiner, values = make_cut_refiner(fvar_linear_interpolation="all")
+    table = osh.PatchTable(refiner, LEVEL, generate_fvar_tables=True)
+    assert table.patch_fvar_values().shape == (table.num_patches, 4)
+    points = table.make_fvar_points(values)
+    patches, st = choose_places(table)
+    s, t = np.float32(st.T[..., None])
+    corners = points[table.patch_fvar_values()[patches]].transpose(1, 0, 2)
+    np.testing.assert_allclose(
+        table.evaluate_fvar(patches, st, points),
+        (1 - t) * ((1 - s) * corners[0] + s * corners[1]) +
+        t * ((1 - s) * corners[3] + s * corners[2]), atol=1e-6)
+    with pytest.raises(IndexError, match="channel"):
+        table.make_fvar_points(values, 1)
+    with pytest.raises(IndexError, match="channel"):
+        table.evaluate_fvar([0], [[0, 0]], points, -1)
+    assert osh.PatchTable(refiner, LEVEL).num_fvar_channels == 0
+
+
 def test_wrong_arguments_are_named(refiner, table):
     points = table.make_points(POSITIONS)
     with pytest.raises(osh.StatusError, match="level"):

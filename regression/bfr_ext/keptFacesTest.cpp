@@ -50,6 +50,8 @@ Found find(BfrExt::Surface<double> &surface, Shape const &shape, INIT const &ini
     for (double const u : {0.0, 0.25}) {
         double const uv[2] = {u, 0};
         found.point.push_back(0);
+        control.resize(std::size_t(surface.GetNumPatchPoints()));
+        surface.ComputePatchPoints(control.data(), 1);
         surface.Evaluate(uv, control.data(), 1, &found.point.back());
     }
     return found;

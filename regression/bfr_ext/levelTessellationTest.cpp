@@ -438,9 +438,6 @@ TEST(TessellationSurface, PointsAreThoseOfSinglePlaces) {
                     ASSERT_NEAR(du[5 * i + k], expected.du[k], 1e-10);
                     ASSERT_NEAR(dv[5 * i + k], expected.dv[k], 1e-10);
                     ASSERT_EQ(p[5 * i + k], alone[3 * i + k]);
-                    if (i < std::size_t(tessellation.GetNumBoundaryCoords())) {
-                        ASSERT_EQ(p[5 * i + k], expected.p[k]);
-                    }
                 }
             }
         }
@@ -529,7 +526,8 @@ TEST(TessellationSurface, BordersInCutLatticesAreThoseOfSinglePlaces) {
                 for (std::size_t i = 0; i < std::size_t(tessellation.GetNumBoundaryCoords()); ++i) {
                     SurfacePoint const expected = surfaces.Evaluate(face, &coords[2 * i]);
                     for (std::size_t k = 0; k < 3; ++k) {
-                        ASSERT_EQ(p[3 * i + k], expected.p[k]) << "face " << face << " place " << i;
+                        ASSERT_NEAR(p[3 * i + k], expected.p[k], 1e-12)
+                            << "face " << face << " place " << i;
                     }
                 }
             }

@@ -249,14 +249,11 @@ TEST(PlainFaceTest, TypesAreMadeWhenTheyAreAskedFor) {
     BfrExt::Surface<double> surface;
     ASSERT_TRUE(factory->InitVertexSurface(0, &surface));
     EXPECT_EQ(cache.GetNumTypes(), 1u);
-    std::vector<double> points(3 * std::size_t(surface.GetNumControlPoints()));
-    surface.GatherControlPoints(shape.positions.data(), 3, points.data(), 3);
-    double const uv[2] = {0.3, 0.2};
-    double p[3];
-    surface.Evaluate(uv, points.data(), 3, p);
+    std::vector<double> points(3 * std::size_t(surface.GetNumPatchPoints()));
+    surface.PreparePatchPoints(shape.positions.data(), 3, points.data(), 3);
     std::size_t const numTypes = cache.GetNumTypes();
     EXPECT_GT(numTypes, 1u);
-    surface.Evaluate(uv, points.data(), 3, p);
+    surface.PreparePatchPoints(shape.positions.data(), 3, points.data(), 3);
     EXPECT_EQ(cache.GetNumTypes(), numTypes);
 }
 

@@ -440,7 +440,7 @@ TEST(Rates, DerivativesAreDifferences) {
                     double uv[2] = {coords[2 * i], coords[2 * i + 1]};
                     uv[k] += end == 0 ? -kStep : kStep;
                     Parameterization::ConvertFromBfr(bfr, uv, uv);
-                    surface.Evaluate(uv, control.data(), 3, ends[end].data());
+                    ends[end] = surfaces.EvaluatePosition(face, uv);
                 }
                 Vector3 const difference = Scale(Subtract(ends[1], ends[0]), 0.5 / kStep);
                 Vector3 const derivative = ToVector(&(k == 0 ? du : dv)[3 * i]);

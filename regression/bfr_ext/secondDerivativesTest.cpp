@@ -96,9 +96,14 @@ using All = std::array<std::array<REAL, 3>, 6>;
 template <typename REAL>
 All<REAL> evaluateAll(BfrExt::Surface<REAL> const &surface, std::vector<REAL> const &points,
                       std::array<REAL, 2> const &uv) {
+    std::array<std::vector<REAL>, 6> weights;
+    weights.fill(std::vector<REAL>(std::size_t(surface.GetNumControlPoints())));
+    surface.EvaluateStencil(uv.data(), weights[0].data(), weights[1].data(), weights[2].data(),
+                            weights[3].data(), weights[4].data(), weights[5].data());
     All<REAL> all;
-    surface.Evaluate(uv.data(), points.data(), 3, all[0].data(), all[1].data(), all[2].data(),
-                     all[3].data(), all[4].data(), all[5].data());
+    for (std::size_t i = 0; i < all.size(); ++i) {
+        surface.ApplyStencil(weights[i].data(), points.data(), 3, all[i].data());
+    }
     return all;
 }
 

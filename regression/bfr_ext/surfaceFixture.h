@@ -77,13 +77,19 @@ std::vector<REAL> FindControlPoints(FarExt::TopologyRefiner const &refiner,
     return result;
 }
 
+/// By stencils, which are exact; SurfacePlaces.* test what patches make of places.
 template <typename REAL>
 SurfacePoint EvaluateSurface(BfrExt::Surface<REAL> const &surface,
                              std::vector<REAL> const &positions, REAL const uv[2]) {
-    std::vector<REAL> points(3 * std::size_t(surface.GetNumControlPoints()));
-    surface.GatherControlPoints(positions.data(), 3, points.data(), 3);
+    std::vector<REAL> weights[3];
+    for (std::vector<REAL> &row : weights) {
+        row.resize(std::size_t(surface.GetNumControlPoints()));
+    }
+    surface.EvaluateStencil(uv, weights[0].data(), weights[1].data(), weights[2].data());
     REAL values[3][3];
-    surface.Evaluate(uv, points.data(), 3, values[0], values[1], values[2]);
+    for (std::size_t i = 0; i < 3; ++i) {
+        surface.ApplyStencilFromMesh(weights[i].data(), positions.data(), 3, values[i]);
+    }
     SurfacePoint result;
     for (std::size_t k = 0; k < 3; ++k) {
         result.p[k] = double(values[0][k]);
@@ -120,19 +126,27 @@ public:
     /// The second derivatives: by u twice, by u and v, by v twice.
     std::array<Vector3, 3> EvaluateSecond(int face, REAL const uv[2]) const {
         BfrExt::Surface<REAL> const &surface = (*this)[face];
-        std::vector<REAL> points(3 * std::size_t(surface.GetNumControlPoints()));
-        surface.GatherControlPoints(_positions.data(), 3, points.data(), 3);
-        REAL v[6][3];
-        surface.Evaluate(uv, points.data(), 3, v[0], v[1], v[2], v[3], v[4], v[5]);
-        return {ToVector(v[3]), ToVector(v[4]), ToVector(v[5])};
+        std::vector<REAL> weights[6];
+        for (std::vector<REAL> &row : weights) {
+            row.resize(std::size_t(surface.GetNumControlPoints()));
+        }
+        surface.EvaluateStencil(uv, weights[0].data(), weights[1].data(), weights[2].data(),
+                                weights[3].data(), weights[4].data(), weights[5].data());
+        std::array<Vector3, 3> result;
+        for (std::size_t i = 0; i < 3; ++i) {
+            REAL value[3];
+            surface.ApplyStencilFromMesh(weights[3 + i].data(), _positions.data(), 3, value);
+            result[i] = ToVector(value);
+        }
+        return result;
     }
     /// Without derivatives, which take most of the time.
     Vector3 EvaluatePosition(int face, REAL const uv[2]) const {
         BfrExt::Surface<REAL> const &surface = (*this)[face];
-        std::vector<REAL> points(3 * std::size_t(surface.GetNumControlPoints()));
-        surface.GatherControlPoints(_positions.data(), 3, points.data(), 3);
+        std::vector<REAL> weights(std::size_t(surface.GetNumControlPoints()));
+        surface.EvaluateStencil(uv, weights.data());
         REAL p[3];
-        surface.Evaluate(uv, points.data(), 3, p);
+        surface.ApplyStencilFromMesh(weights.data(), _positions.data(), 3, p);
         return {double(p[0]), double(p[1]), double(p[2])};
     }
 

@@ -162,12 +162,12 @@ void checkHex(Far::TopologyRefiner const &base) {
         expect(false, "hexagonal: a face has a surface");
         return;
     }
-    std::vector<float> control(3 * std::size_t(surface.GetNumControlPoints()));
-    surface.GatherControlPoints(kPositions, 3, control.data(), 3);
+    std::vector<float> points(3 * std::size_t(surface.GetNumPatchPoints()));
+    surface.PreparePatchPoints(kPositions, 3, points.data(), 3);
     float uv[2];
     surface.GetParameterization().GetCenterCoord(uv);
     float point[3];
-    surface.Evaluate(uv, control.data(), 3, point);
+    surface.Evaluate(uv, points.data(), 3, point);
     expect(std::abs(point[0]) < 1e-6f && std::abs(point[1]) < 1e-6f &&
                std::abs(point[2] + 1) < 1e-6f,
            "hexagonal: the surface of a face has its centroid");

@@ -4,12 +4,12 @@
 #
 # Checks that a shared library exports its public API, of which public is a part of a mangled name,
 # and of what is internal no more than the inline code of public headers and other layers call.
-set(called AllocateArray FreeArray PrepareArray RangeQueue ForEachRange Report SortUnique
+set(called AllocateArray FreeArray PrepareArray RangeQueue ForEachRange Report InsertUnique SortUnique
   RefinementRules GetRules FaceRule TruncationMask PrimvarRows PrimvarLimitRows
   LimitRows CheckLimitLevel LimitOrigins LatticePatch LatticeFaces PlainFaces
   RegularFaces
   FindUniformSources GetStepsToLimit GatherBaseCell FindBaseCellTurns GatherBorder RefineCell
-  UseNextMasks ComesApart GatherFanItems FindCornerLimits PatchRefinement MarkFeatures StepRowBack MakePlainBaseCell IndexMap
+  UseNextMasks ComesApart GatherFanItems FindCornerLimits PatchRefinement GetVertexMarks StepRowBack MakePlainBaseCell IndexMap
   Device MakeDeviceLimit MakeDeviceRefinements
   CheckChannel CheckStencilMode GetChannelInterpolation GetModeInterpolation GetChosenNumThreads
   CheckLevel CheckDescriptors CheckPatchTask EvaluatePatches)

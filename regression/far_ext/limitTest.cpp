@@ -2,6 +2,7 @@
 //
 // Limit stencils: against refinement itself, which tends to the limit, and against each other.
 #include "referenceMatch.h"
+#include "sharpSector.h"
 #include "valueLevels.h"
 
 #include "far_ext/limitStencilTableFactory.h"
@@ -99,28 +100,10 @@ bool isFree(TopologyRefiner const &refiner, TopologyLevel const &level, int vert
 /// sides of corners and, with Average, narrow ones of creases.
 bool isApproximate(TopologyLevel const &level, ReferenceMask mask, LimitSides const &sides,
                    int side) {
-    int const vert = sides.GetVertex(side);
-    int numSharp = 0;
-    for (int edge : level.GetVertexEdges(vert)) {
-        numSharp += level.IsEdgeInfSharp(edge);
-    }
-    double size = 0;
-    for (int i = 0; i < level.GetVertexFaces(vert).size(); ++i) {
-        int const face = level.GetVertexFaces(vert)[i];
-        int const local = level.GetVertexFaceLocalIndices(vert)[i];
-        bool const isCut = Sdc::Crease::IsInfinite(level.GetFaceDiagonalSharpness(face)) &&
-                           local % FarExt::kDiagonalEnd == 0;
-        numSharp += isCut;
-        bool const isHalf = level.IsFaceHalf(face) && local < 2;
-        for (int half : {0, 1}) {
-            size += sides.FindSide(level, face, local, isCut ? half : 0) == side
-                        ? (isHalf ? 0.25 : 0.5)
-                        : 0;
-        }
-    }
-    bool const isCorner = numSharp > 2 || level.IsVertexInfSharp(vert);
-    bool const isNarrow = size < 1.5 && mask == ReferenceMask::Average;
-    return level.IsVertexNonManifold(vert) || (numSharp >= 2 && (isCorner ? size >= 2 : isNarrow));
+    SharpSector const sector(level, sides, side);
+    bool const isNarrow = sector.size < 1.5 && mask == ReferenceMask::Average;
+    return level.IsVertexNonManifold(sides.GetVertex(side)) ||
+           (sector.numSharp >= 2 && (sector.isCorner ? sector.size >= 2 : isNarrow));
 }
 
 LimitValues evaluateAll(TopologyRefiner const &refiner, int level, ReferenceValues const &base) {

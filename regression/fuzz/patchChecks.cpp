@@ -17,7 +17,6 @@ using FarExt::TopologyRefiner;
 namespace {
 
 constexpr int kNumCorners = 4;
-constexpr int kPointsOfCorner = 5;
 
 /// Fails unless patches are refused for a reason.
 void checkPatchRefusal(TopologyRefiner const &refiner, int depth,
@@ -117,25 +116,30 @@ void checkPlaces(PatchMap const &map, TopologyLevel const &level, Dice &dice) {
     }
 }
 
-/// Corners that are vertices, or centres of faces, lie on the limit surface.
-void checkCorners(OracleLevels const &levels, Far::PatchTable const &table, PatchMap const &map,
-                  ReferenceValues const &points) {
-    MeshSurfaces<double> const mesh(levels, levels.values[0]);
-    int const numControl = int(levels.values[0].levels[0].rows());
+/// \brief Corners that are vertices, or centres of faces, are those of the limit surface, or of the channel.
+///
+/// \param vertices  of all patches
+void checkCorners(OracleLevels const &levels, OracleLevels::Values const &values,
+                  Far::PatchTable const &table, PatchMap const &map, Far::ConstIndexArray vertices,
+                  Far::StencilTableReal<double> const *stencils) {
+    if (!stencils) {
+        Fail("patches have no points of double precision");
+    }
+    ReferenceValues const points = applyStencils(*stencils, values.levels[0]);
+    MeshSurfaces<double> const mesh(levels, values);
+    int const numControl = int(values.levels[0].rows());
+    int const numPoints = vertices.size() / map.GetNumPatches();
     for (int patch = 0; patch < map.GetNumPatches(); ++patch) {
         if (!mesh.Has(map.GetFace(patch))) {
             continue;
         }
-        PatchMap::Place const corner = {patch, 0, 0};
-        Far::PatchTable::PatchHandle const handle = PatchMap::GetHandle(corner.patch);
-        bool const isKite = table.GetPatchParam(handle).NonQuadRoot();
-        Far::ConstIndexArray const vertices = table.GetPatchVertices(handle);
+        bool const isKite = table.GetPatchParam(PatchMap::GetHandle(patch)).NonQuadRoot();
         for (int i = 0; i < kNumCorners; i += isKite ? 2 : 1) {
             double const uv[2] = {map.GetCoords(patch)[std::size_t(2 * i)],
                                   map.GetCoords(patch)[std::size_t(2 * i + 1)]};
             Eigen::RowVectorXd const expected = mesh.Evaluate(map.GetFace(patch), uv).row(0);
             Eigen::RowVectorXd const actual =
-                points.row(vertices[kPointsOfCorner * i] - numControl);
+                points.row(vertices[numPoints * patch + numPoints / kNumCorners * i] - numControl);
             if (!(GetDifference(actual, expected) <= mesh.GetTolerance())) {
                 Fail("corner ", i, " of patch ", patch, " in face ", map.GetFace(patch), " at ",
                      uv[0], ", ", uv[1], " is ", actual, ", not ", expected);
@@ -156,6 +160,9 @@ void CheckPatches(OracleLevels const &levels, Dice &dice) {
     int const depth = surfaceLevel + dice.Roll(last - surfaceLevel);
     PatchTableFactory::Options options(depth);
     options.SetPatchPrecision<double>();
+    options.generateFVarTables = true;
+    options.generateFVarLegacyLinearPatches = false;
+    options.SetFVarPatchPrecision<double>();
     FarExt::CallStatus status;
     auto const table = PatchTableFactory::Create(refiner, options, &status);
     if (!table) {
@@ -168,12 +175,18 @@ void CheckPatches(OracleLevels const &levels, Dice &dice) {
              " patches");
     }
     checkPlaces(map, refiner.GetLevel(surfaceLevel), dice);
-    auto const *const stencils = table->GetLocalPointStencilTable<double>();
-    if (!stencils) {
-        Fail("patches have no points of double precision");
+    checkCorners(levels, levels.values[0], *table, map, table->GetPatchArrayVertices(0),
+                 table->GetLocalPointStencilTable<double>());
+    checkCorners(levels, levels.values[1], *table, map, table->GetVaryingVertices(),
+                 table->GetLocalPointVaryingStencilTable<double>());
+    for (int channel = 0; channel < table->GetNumFVarChannels(); ++channel) {
+        if (table->GetFVarPatchDescriptor(channel).GetType() == Far::PatchDescriptor::QUADS) {
+            continue; // whose points have single precision
+        }
+        checkCorners(levels, levels.values[std::size_t(channel) + 2], *table, map,
+                     table->GetFVarValues(channel),
+                     table->GetLocalPointFaceVaryingStencilTable<double>(channel));
     }
-    ReferenceValues const points = applyStencils(*stencils, levels.values[0].levels[0]);
-    checkCorners(levels, *table, map, points);
 }
 
 } // namespace OpenSubdivHex::Regression

@@ -370,8 +370,15 @@ bool MeshSurfaces<REAL>::IsJoined(int face) const {
 template <typename REAL>
 ReferenceValues MeshSurfaces<REAL>::Evaluate(int face, REAL const uv[2]) const {
     REAL results[3][kMaxPointSize];
-    surfaces[std::size_t(face)].Evaluate(uv, GetControlPoints(face), pointSize, results[0],
-                                         results[1], results[2]);
+    Surface<REAL> const &surface = surfaces[std::size_t(face)];
+    std::vector<REAL> weights[3];
+    for (std::vector<REAL> &row : weights) {
+        row.resize(std::size_t(surface.GetNumControlPoints()));
+    }
+    surface.EvaluateStencil(uv, weights[0].data(), weights[1].data(), weights[2].data());
+    for (std::size_t i = 0; i < 3; ++i) {
+        surface.ApplyStencil(weights[i].data(), GetControlPoints(face), pointSize, results[i]);
+    }
     ReferenceValues evaluated(3, pointSize);
     for (int which = 0; which < 3; ++which) {
         for (int k = 0; k < pointSize; ++k) {

@@ -112,8 +112,8 @@ int expectParts(TopologyRefiner const &refiner, std::mt19937 &random) {
         refinements.push_back(&refinement);
         PreparedRefinement prepared;
         OsdExt::internal::PrepareRefinement(
-            FarExt::internal::RefinementRules(mesh.levels[level], refiner.GetHexSchemeOptions(),
-                                              FarExt::Interpolation::Vertex),
+            FarExt::internal::GetRules(mesh.levels[level], refiner.GetHexSchemeOptions(),
+                                       FarExt::Interpolation::Vertex),
             refinements, tileMap, prepared);
         std::vector<float> dst = makeElements(refinement.child->numVertices, kUntouched);
         OsdExt::internal::RefineElements(

@@ -77,6 +77,11 @@ std::vector<Row> const &GetRows() {
                           "Osd::CpuEvaluator", 2, 4});
         result.push_back({"surface-points", "tessellated surfaces, per point, 1 thread",
                           "Bfr::Surface::Evaluate", 8, 15});
+        result.push_back({"surface-places",
+                          "places of surfaces with derivatives, in random order, 1 thread",
+                          "Bfr::Surface::Evaluate", 1, 2});
+        result.push_back({"surface-patch-points", "patch points of surfaces, per face, 1 thread",
+                          "Bfr::Surface::PreparePatchPoints", 0.5, 1});
         result.push_back({"surface-stencils", "tessellated surfaces, per point, 1 thread",
                           "Bfr::Surface, one face's stencils kept", 4, 8});
         result.push_back({"stream-1", "streamed surfaces, per point, 1 thread",

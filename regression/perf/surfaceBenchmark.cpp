@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // Surfaces of faces against Bfr's of Catmull-Clark or, of triangles, Loop: nanoseconds per point of a
+// tessellation of every face, without and with first derivatives, and per surface that is made, with
+// a cache that is empty or full; per point of surfaces that are made and evaluated for the first time; and per
+// place at random, and per face whose patch points are prepared for that.
 // tessellation of every face, of a level and of a rate, without and with first derivatives, and per surface that is
 // made, with a cache that is empty or full; and per point of surfaces that are made and evaluated for the first time.
 #include "makers.h"
@@ -15,7 +18,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <numeric>
+#include <random>
 
 namespace OpenSubdivHex::Regression {
 namespace {
@@ -369,12 +374,90 @@ Contest makeInitContest(BenchMesh const &mesh) {
     return contest;
 }
 
+/// The patch points of all faces, and places of them in random order.
+struct Places {
+    static constexpr std::size_t kNumPerFace = 16;
+
+    /// \param width  of the square that places lie in
+    template <class SURFACES>
+    void Init(SURFACES const &own, float width) {
+        std::mt19937 random(1);
+        std::uniform_real_distribution<float> coordinate(0, width);
+        for (std::size_t face = 0; face < own.surfaces.size(); ++face) {
+            faces.insert(faces.end(), kNumPerFace, int(face));
+            firstPoints.push_back(numPoints);
+            numPoints += std::size_t(own.surfaces[face].GetNumPatchPoints());
+        }
+        std::shuffle(faces.begin(), faces.end(), random);
+        std::generate_n(std::back_inserter(uvs), 2 * faces.size(),
+                        [&] { return coordinate(random); });
+        patchPoints.resize(3 * numPoints);
+    }
+
+    template <class SURFACES>
+    double Prepare(SURFACES const &own, std::vector<float> const &positions) {
+        for (std::size_t face = 0; face < own.surfaces.size(); ++face) {
+            own.surfaces[face].PreparePatchPoints(positions.data(), 3,
+                                                  &patchPoints[3 * firstPoints[face]], 3);
+        }
+        return double(own.surfaces.size());
+    }
+
+    template <class SURFACES>
+    double Evaluate(SURFACES const &own, std::vector<float> (&results)[3]) const {
+        for (std::size_t i = 0; i < faces.size(); ++i) {
+            auto const face = std::size_t(faces[i]);
+            own.surfaces[face].Evaluate(&uvs[2 * i], &patchPoints[3 * firstPoints[face]], 3,
+                                        &results[0][3 * i], &results[1][3 * i], &results[2][3 * i]);
+        }
+        return double(faces.size());
+    }
+
+    std::vector<int> faces;
+    std::vector<float> uvs;
+    std::vector<std::size_t> firstPoints; ///< by face
+    std::size_t numPoints = 0;
+    std::vector<float> patchPoints;
+};
+
+Contest makePlacesContest(BenchMesh const &mesh) {
+    auto const workspace = std::make_shared<Workspace>(mesh);
+    auto const own = std::make_shared<OwnSurfaces>();
+    auto const peer = std::make_shared<PeerSurfaces>();
+    own->factory = BfrExt::SurfaceFactory::Create(*workspace->refiner);
+    peer->factory = std::make_unique<Bfr::RefinerSurfaceFactory<>>(*workspace->peerRefiner);
+    own->Init(workspace->GetNumFaces());
+    peer->Init(workspace->GetNumFaces());
+    // The corner of a triangle, or of the first sub-face of a larger face, and of its neighbours.
+    float const width = own->surfaces[0].GetFaceSize() == 4 ? 1.0F : 0.5F;
+    Contest contest;
+    auto const add = [&](std::string const &name, auto const &surfaces) {
+        auto const places = std::make_shared<Places>();
+        places->Init(*surfaces, width);
+        places->Prepare(*surfaces, workspace->positions);
+        for (std::vector<float> &result : workspace->results) {
+            result.resize(3 * places->faces.size());
+        }
+        contest.contestants.push_back(makePointContestant(
+            name, workspace, [=] { return places->Evaluate(*surfaces, workspace->results); }));
+        contest.contestants.push_back(makePointContestant(name + ", patch points", workspace, [=] {
+            return places->Prepare(*surfaces, workspace->positions);
+        }));
+    };
+    add("BfrExt::Surface", own);
+    add("Bfr::Surface", peer);
+    contest.pairings = {{"surface-places", 0, {2}}, {"surface-patch-points", 1, {3}}};
+    return contest;
+}
+
 } // namespace
 
 void AddSurfaceBenchmarks(Suite &suite) {
     auto const add = [&](BenchMesh const &mesh, bool isRegular) {
         suite.AddContest({"surfaces, level 4", "point", mesh, Memory::Resident},
                          [=] { return makePointContest(mesh, isRegular); });
+        suite.AddContest({"places of surfaces", "place", mesh, Memory::Resident},
+                         [=] { return makePlacesContest(mesh); });
         suite.AddContest({"surfaces, rate 8", "point", mesh, Memory::Resident},
                          [=] { return makeRateContest(mesh, isRegular); });
         for (Memory memory : {Memory::Default, Memory::Warm}) {

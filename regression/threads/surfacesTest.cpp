@@ -51,8 +51,8 @@ std::unique_ptr<SurfaceFactory> createFactory(TopologyRefiner const &refiner,
 /// The points of a surface, with derivatives: at a place, and of a tessellation.
 void addPoints(Surface<double> const &surface, LevelTessellation const &tessellation,
                std::vector<double> const &positions, std::vector<double> *all) {
-    std::vector<double> control(kDim * std::size_t(surface.GetNumControlPoints()));
-    surface.GatherControlPoints(positions.data(), kDim, control.data(), kDim);
+    std::vector<double> control(kDim * std::size_t(surface.GetNumPatchPoints()));
+    surface.PreparePatchPoints(positions.data(), kDim, control.data(), kDim);
     double const uv[] = {0.3, 0.2};
     double results[6][kDim];
     surface.Evaluate(uv, control.data(), kDim, results[0], results[1], results[2], results[3],

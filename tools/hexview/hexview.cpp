@@ -2,12 +2,12 @@
 //
 // hexview: shows a mesh and its refined levels in a window, or draws a picture of them.
 #include "animation.h"
-#include "offscreen.h"
 #include "surfacePainter.h"
 #include "viewedSurface.h"
 #include "window.h"
 
 #include "far_ext/version.h"
+#include "tools/gl/offscreen.h"
 #include "tools/mesh/fileError.h"
 #include "tools/mesh/meshReader.h"
 #include "tools/mesh/program.h"

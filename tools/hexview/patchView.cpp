@@ -6,17 +6,12 @@
 
 #include "far_ext/patchMap.h"
 #include "osd_ext/ompEvaluator.h"
+#include "tools/gl/patchDrawing.h"
 
 #include <algorithm>
 #include <stdexcept>
 
 namespace OpenSubdivHex::Tools {
-
-namespace {
-
-constexpr int kNumPoints = 20; // of a patch
-
-} // namespace
 
 PatchView::PatchView(FarExt::TopologyRefiner const &refiner, int level) {
     FarExt::PatchTableFactory::Options const options(level);
@@ -57,26 +52,12 @@ void PatchView::Evaluate(std::vector<float> const &controlPoints) {
 void PatchView::Draw(ViewProgram const &program) const {
     _coords.Bind(kCoordArray);
     _faces.Bind(kFaceArray);
-    glActiveTexture(GL_TEXTURE0);
-    glBindTexture(GL_TEXTURE_BUFFER, _table->GetPatchParamTextureBuffer());
     glBindBuffer(GL_ARRAY_BUFFER, _points.BindVBO());
     glEnableVertexAttribArray(0);
     glVertexAttribPointer(0, kLength, GL_FLOAT, GL_FALSE, 0, nullptr);
-    glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, _table->GetPatchIndexBuffer());
-    // Mesa's driver for processors splits calls of more than 1,024 vertices, and counts primitives anew in each part.
-    constexpr int kPatchesPerCall = 1024 / kNumPoints;
-    glPatchParameteri(GL_PATCH_VERTICES, kNumPoints);
-    for (int first = 0; first < _numPatches; first += kPatchesPerCall) {
-        int const count = std::min(kPatchesPerCall, _numPatches - first);
-        glUniform1i(program["firstPatch"], first);
-        glDrawElements(
-            GL_PATCHES, count * kNumPoints, GL_UNSIGNED_INT,
-            reinterpret_cast<void const *>(sizeof(unsigned) * kNumPoints * std::size_t(first)));
-    }
+    DrawPatches(*_table, program["firstPatch"]);
     glDisableVertexAttribArray(0);
-    glBindTexture(GL_TEXTURE_BUFFER, 0);
     glBindBuffer(GL_ARRAY_BUFFER, 0);
-    glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, 0);
 }
 
 } // namespace OpenSubdivHex::Tools

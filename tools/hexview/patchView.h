@@ -2,10 +2,9 @@
 #ifndef OPENSUBDIVHEX_TOOLS_HEXVIEW_PATCH_VIEW_H
 #define OPENSUBDIVHEX_TOOLS_HEXVIEW_PATCH_VIEW_H
 
-#include "glObjects.h"
-
 #include "far_ext/patchTableFactory.h"
 #include "far_ext/topologyRefiner.h"
+#include "tools/gl/glObjects.h"
 
 #include <opensubdiv/osd/glPatchTable.h>
 

@@ -2,10 +2,10 @@
 #ifndef OPENSUBDIVHEX_TOOLS_HEXVIEW_SURFACE_PAINTER_H
 #define OPENSUBDIVHEX_TOOLS_HEXVIEW_SURFACE_PAINTER_H
 
-#include "glObjects.h"
 #include "viewedSurface.h"
 
-#include "bfr_ext/view.h"
+#include "tools/gl/glObjects.h"
+#include "tools/gl/orbitCamera.h"
 
 #include <glm/glm.hpp>
 
@@ -24,28 +24,6 @@ struct DrawSettings {
     bool hasControlMesh = false;
     int chosenVertex = -1; ///< of the control mesh
     PatchSettings patches; ///< of a surface of patches
-};
-
-/// \brief A perspective camera that goes around a point, with y up.
-struct OrbitCamera {
-    /// Sees all \p points, of which there is one at least.
-    static OrbitCamera Around(std::vector<float> const &points);
-
-    glm::vec3 GetEye() const;
-    glm::vec3 GetUp() const;
-    /// From space to the cube that OpenGL draws.
-    glm::mat4 GetProjection(float aspect) const { return GetLens(aspect) * GetView(); }
-    /// From space to that of the eye, and from there on.
-    glm::mat4 GetView() const;
-    glm::mat4 GetLens(float aspect) const; ///< \copydoc GetView()
-    /// The same camera, for a picture of that many pixels.
-    BfrExt::Camera ForPicture(int width, int height) const;
-
-    glm::vec3 center{0};
-    float size = 1; ///< radius of what is seen
-    float azimuth = 30;
-    float elevation = 20;
-    float distance = 1; ///< 1 sees all
 };
 
 /// \brief Draws surfaces into the current framebuffer.

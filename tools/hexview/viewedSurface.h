@@ -4,13 +4,13 @@
 
 #include "cellView.h"
 #include "drawnTopology.h"
-#include "glObjects.h"
 #include "patchView.h"
 
 #include "far_ext/topologyRefiner.h"
 #include "osd_ext/glEvaluation.h"
 #include "osd_ext/glRefinementEvaluator.h"
 #include "osd_ext/refinementEvaluator.h"
+#include "tools/gl/glObjects.h"
 #include "tools/mesh/mesh.h"
 
 #include <opensubdiv/osd/glComputeEvaluator.h>

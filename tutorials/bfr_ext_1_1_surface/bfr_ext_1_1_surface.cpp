@@ -35,21 +35,21 @@ int main() {
     int numSurfaces = 0;
     int numOutward = 0;
     BfrExt::Surface<float> surface;
-    std::vector<float> controlPoints;
+    std::vector<float> patchPoints;
     for (int face = 0; face < factory->GetNumFaces(); ++face) {
         // A face that is a hole has none.
         if (!factory->InitVertexSurface(face, &surface)) {
             continue;
         }
         ++numSurfaces;
-        controlPoints.resize(3 * std::size_t(surface.GetNumControlPoints()));
-        surface.GatherControlPoints(cube.positions.data(), 3, controlPoints.data(), 3);
+        patchPoints.resize(3 * std::size_t(surface.GetNumPatchPoints()));
+        surface.PreparePatchPoints(cube.positions.data(), 3, patchPoints.data(), 3);
 
         // The face is the unit square in the plane of u and v.
         for (int i = 0; i < 9; ++i) {
             float const uv[2] = {0.5F * float(i % 3), 0.5F * float(i / 3)};
             float p[3], du[3], dv[3];
-            surface.Evaluate(uv, controlPoints.data(), 3, p, du, dv);
+            surface.Evaluate(uv, patchPoints.data(), 3, p, du, dv);
             float const normal[3] = {du[1] * dv[2] - du[2] * dv[1], du[2] * dv[0] - du[0] * dv[2],
                                      du[0] * dv[1] - du[1] * dv[0]};
             // The normals of this surface point away from its centre, the origin.

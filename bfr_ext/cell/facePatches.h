@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+#ifndef OPENSUBDIVHEX_BFR_EXT_CELL_FACE_PATCHES_H
+#define OPENSUBDIVHEX_BFR_EXT_CELL_FACE_PATCHES_H
+
+#include "../surface.h"
+#include "cellStencil.h"
+
+#include "far_ext/patch/patchBuilder.h"
+
+#include <cstddef>
+
+namespace OpenSubdivHex::BfrExt::internal {
+
+using FarExt::internal::kNumPatchPoints;
+
+/// \brief The first level whose cells can be the patches of a base face, and the last one.
+inline constexpr int kFirstPatchLevel = 2;
+inline constexpr int kLastPatchLevel = 6;
+
+/// \brief How many Gregory patches the cells of a level are in a base face of \p size sides.
+///
+/// They are in the order of the cells: depth first, with children in the order of RefineCell().
+int GetNumFacePatches(int size, int level);
+
+/// A place in one of the patches of a face.
+struct PatchPlace {
+    int patch;
+    double s;
+    double t;
+    Pair first[2];  ///< derivatives of s, and of t, by u and v
+    Pair second[3]; ///< of (s, t), by u twice, by u and v, by v twice
+};
+
+/// The place of a point of a base face of \p size sides, with derivatives as far as \p numDerivatives asks: 0, 1 or 2.
+PatchPlace FindPatchPlace(BasePoint const &point, int size, int level, int numDerivatives);
+
+/// \brief Makes the points of all patches of a face from its control points.
+///
+/// \param control  points of the type, of \p size numbers each, from one to the next by \p stride
+/// \param points   kNumPatchPoints for each patch, likewise
+template <typename REAL>
+void MakeFacePatchPoints(BaseType const &type, int faceSize, int level, REAL const *control,
+                         int size, std::ptrdiff_t stride, REAL *points);
+
+/// \brief Evaluates a patch: the point, and derivatives by u and v as far as \p numDerivatives asks: 0, 1 or 2.
+///
+/// \param points   those of all patches
+/// \param results  the point; by u, by v; by u twice, by u and v, by v twice
+template <typename REAL>
+void EvaluatePatch(PatchPlace const &place, int numDerivatives, REAL const *points, int size,
+                   std::ptrdiff_t stride, REAL *const *results);
+
+} // namespace OpenSubdivHex::BfrExt::internal
+
+#endif

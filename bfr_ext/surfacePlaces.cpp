@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "surfacePlaces.h"
+
+#include "far_ext/vtr/parallel.h"
+
+#include <algorithm>
+#include <numeric>
+#include <utility>
+
+namespace OpenSubdivHex::BfrExt {
+
+using FarExt::CallStatus;
+
+template <typename REAL>
+std::unique_ptr<SurfacePlaces<REAL>>
+SurfacePlaces<REAL>::Create(SurfaceFactory const &factory, int numPlaces, Index const faces[],
+                            REAL const uvs[], Options options, CallStatus *status) {
+    CallStatus result;
+    if (numPlaces < 0) {
+        result = CallStatus(FarExt::StatusCode::InvalidArgument, FarExt::ComponentType::NoComponent,
+                            0, "the number of places is negative");
+    }
+    std::vector<Index> order(std::size_t(std::max(numPlaces, 0)));
+    std::iota(order.begin(), order.end(), 0);
+    std::stable_sort(order.begin(), order.end(),
+                     [&](Index a, Index b) { return faces[a] < faces[b]; });
+    std::unique_ptr<SurfacePlaces> places(new SurfacePlaces());
+    places->_places.reserve(order.size());
+    auto const init = [&](Index face, Surface<REAL> &surface) {
+        switch (options.interpolationMode) {
+        case FarExt::INTERPOLATE_VERTEX:
+            return factory.InitVertexSurface(face, &surface, &result);
+        case FarExt::INTERPOLATE_VARYING:
+            return factory.InitVaryingSurface(face, &surface, &result);
+        default:
+            return factory.InitFaceVaryingSurface(face, &surface, options.fvarChannel, &result);
+        }
+    };
+    Index lastFace = Far::INDEX_INVALID;
+    for (Index const number : order) {
+        Index const face = faces[number];
+        if (places->_surfaces.empty() || face != lastFace) {
+            lastFace = face;
+            places->_firstPlaces.push_back(Index(places->_places.size()));
+            places->_surfaces.emplace_back();
+            if (!init(face, places->_surfaces.back())) {
+                break;
+            }
+        }
+        places->_places.push_back({number, {uvs[2 * number], uvs[2 * number + 1]}});
+    }
+    places->_firstPlaces.push_back(Index(places->_places.size()));
+    if (!FarExt::internal::Report(std::move(result), status)) {
+        return nullptr;
+    }
+    return places;
+}
+
+// Calls function(surface, patch points, place) for all places.
+template <typename REAL>
+template <typename FUNCTION>
+void SurfacePlaces<REAL>::forEachPlace(REAL const *meshPoints, PointDescriptor const &meshPointDesc,
+                                       FUNCTION const &function) const {
+    constexpr Index kRange = 4; // faces whose patch points take some microseconds each
+    PointDescriptor const desc(meshPointDesc.size);
+    FarExt::internal::ParallelForRange(
+        Index(_surfaces.size()), [] { return std::vector<REAL>(); },
+        [&](std::vector<REAL> &points, Index begin, Index end) {
+            for (auto face = std::size_t(begin); face < std::size_t(end); ++face) {
+                Surface<REAL> const &surface = _surfaces[face];
+                points.resize(std::size_t(surface.GetNumPatchPoints()) * std::size_t(desc.size));
+                surface.PreparePatchPoints(meshPoints, meshPointDesc, points.data(), desc);
+                for (Index i = _firstPlaces[face]; i < _firstPlaces[face + 1]; ++i) {
+                    function(surface, points.data(), _places[std::size_t(i)]);
+                }
+            }
+        },
+        kRange);
+}
+
+template <typename REAL>
+void SurfacePlaces<REAL>::Evaluate(REAL const meshPoints[], PointDescriptor const &meshPointDesc,
+                                   REAL p[], PointDescriptor const &resultDesc) const {
+    PointDescriptor const desc(meshPointDesc.size);
+    forEachPlace(meshPoints, meshPointDesc,
+                 [&](Surface<REAL> const &surface, REAL const *points, Place const &place) {
+                     surface.Evaluate(place.uv, points, desc,
+                                      p + std::ptrdiff_t(place.number) * resultDesc.stride);
+                 });
+}
+
+template <typename REAL>
+void SurfacePlaces<REAL>::Evaluate(REAL const meshPoints[], PointDescriptor const &meshPointDesc,
+                                   REAL p[], REAL du[], REAL dv[],
+                                   PointDescriptor const &resultDesc) const {
+    PointDescriptor const desc(meshPointDesc.size);
+    forEachPlace(meshPoints, meshPointDesc,
+                 [&](Surface<REAL> const &surface, REAL const *points, Place const &place) {
+                     std::ptrdiff_t const result = std::ptrdiff_t(place.number) * resultDesc.stride;
+                     surface.Evaluate(place.uv, points, desc, p + result, du + result, dv + result);
+                 });
+}
+
+template class SurfacePlaces<float>;
+template class SurfacePlaces<double>;
+
+} // namespace OpenSubdivHex::BfrExt

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+#ifndef OPENSUBDIVHEX_FAR_EXT_PATCH_CELL_PATCH_POINTS_H
+#define OPENSUBDIVHEX_FAR_EXT_PATCH_CELL_PATCH_POINTS_H
+
+#include "patchBuilder.h"
+
+#include "far_ext/limit/cellPatch.h"
+
+#include <vector>
+
+namespace OpenSubdivHex::FarExt::internal {
+
+/// The Gregory patches of a cell: a half cell is one, a whole quad is one, a whole hexagon is one for each half,
+/// and each other whole cell is a kite for each corner.
+constexpr int GetNumCellPatches(CellKind kind, int numCorners) {
+    return kind == CellKind::Half ? 1 : HasHalves(numCorners) ? 2 : GetNumPatches(numCorners);
+}
+
+/// \brief Finds the points of the patches of a whole or half cell as sums of the vertices of its patch.
+///
+/// Varying data, which have kinks along edges of all levels, are bilinear between the corners of a patch.
+///
+/// \param ages  steps of the cell behind its base face, and the ages of its corners (CellPatch::corners),
+///              in the place of those of vertices
+/// \param rows  kNumPatchPoints rows for each patch, each with a weight for each vertex
+/// \return      a failure where the cell has no limit at a corner
+OPENSUBDIVHEX_API CallStatus FindCellPatchPoints(CellPatch const &cell, Sdc::Options sdcOptions,
+                                                 HexSchemeOptions const &schemeOptions,
+                                                 Interpolation interpolation, PatchAges const &ages,
+                                                 std::vector<double> &rows);
+
+} // namespace OpenSubdivHex::FarExt::internal
+
+#endif
