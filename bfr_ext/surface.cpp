@@ -36,8 +36,6 @@ constexpr int kLastLevelOfMatrices = 6;
 // Of finer ones, trees have too few.
 constexpr int kLastLevelOfSelection = 3;
 
-constexpr std::size_t kMaxLatticeFaceSize = 6;
-
 // A weighted sum of points, in double precision.
 template <typename REAL, typename WEIGHT>
 void sumUp(WEIGHT const *weights, int numPoints, REAL const *points, Far::Index const *indices,
@@ -281,10 +279,6 @@ void Surface<REAL>::evaluate(LevelTessellation const &tessellation, REAL const c
     internal::PlainFaceType const *const plain = _type.GetPlain();
     if (!plain) {
         evaluateInside(tessellation, evaluator, controlPoints, pointDesc, results, resultDesc);
-        if (_type->IsInLattice() && !tessellation._section &&
-            evaluateLatticeBorder(tessellation, controlPoints, pointDesc, results[0], resultDesc)) {
-            return;
-        }
     }
     useBorder(controlPoints, pointDesc, [&](internal::BorderEvaluator<REAL> &border) {
         if (plain) {
@@ -296,7 +290,12 @@ void Surface<REAL>::evaluate(LevelTessellation const &tessellation, REAL const c
                                               results[1], results[2], resultDesc.stride);
             }
         }
-        evaluateBorder(tessellation, border, plain ? &evaluator : nullptr, results[0], resultDesc);
+        bool const isDone = !plain && !tessellation._section && _type->IsInLattice() &&
+                            evaluateLatticeBorder(tessellation, border, results[0], resultDesc);
+        if (!isDone) {
+            evaluateBorder(tessellation, border, plain ? &evaluator : nullptr, results[0],
+                           resultDesc);
+        }
     });
 }
 
@@ -527,60 +526,22 @@ void Surface<REAL>::evaluateSectionBorder(LevelTessellation const &tessellation,
     }
 }
 
-// Evaluates all vertices together, and all edges of a level; false where they are not of one type, or an
-// edge has no level.
+// False where an edge has no level, or BorderEvaluator::EvaluateInLattice() is.
 template <typename REAL>
 bool Surface<REAL>::evaluateLatticeBorder(LevelTessellation const &tessellation,
-                                          REAL const controlPoints[],
-                                          PointDescriptor const &pointDesc, REAL p[],
+                                          internal::BorderEvaluator<REAL> &evaluator, REAL p[],
                                           PointDescriptor const &resultDesc) const {
-    using Item = typename internal::ItemSums<REAL>::Item;
-    CellType::LatticeBorder const &border = _type->GetLatticeBorder();
-    if (!border.isAlike) {
-        return false;
-    }
-    auto const numEdges = std::size_t(GetFaceSize());
-    int maxLevel = 0;
-    for (std::size_t edge = 0; edge < numEdges; ++edge) {
+    using Evaluator = internal::BorderEvaluator<REAL>;
+    typename Evaluator::LatticeEdge edges[Evaluator::kMaxLatticeFaceSize];
+    for (std::size_t edge = 0; edge < std::size_t(GetFaceSize()); ++edge) {
         int const level = tessellation.getEdgeLevel(edge);
         if (level < 0) {
             return false;
         }
-        maxLevel = std::max(maxLevel, level);
+        edges[edge] = {level, tessellation.GetNumEdgeCoords(int(edge)),
+                       p + std::ptrdiff_t(tessellation._firstEdgeCoords[edge]) * resultDesc.stride};
     }
-    Item items[kMaxLatticeFaceSize];
-    auto const getItem = [&](std::size_t item) -> CellType::BorderItem const & {
-        return *border.items[item][std::size_t(getTurns()[item])];
-    };
-    auto const evaluate = [&](internal::PlaceMatrix<REAL> const &matrix, std::size_t numItems) {
-        internal::SumUpPlaces(matrix, {controlPoints, pointDesc.stride, std::size_t(pointDesc.size),
-                                       items, numItems});
-    };
-    auto const getResult = [&](int place) { return p + std::ptrdiff_t(place) * resultDesc.stride; };
-    for (std::size_t edge = 0; edge < numEdges; ++edge) {
-        items[edge] = {getItem(numEdges + edge).points.data(),
-                       getResult(tessellation._firstEdgeCoords[edge]), 0};
-    }
-    using Evaluator = internal::BorderEvaluator<REAL>;
-    evaluate(Evaluator::GetVertexMatrix(*getItem(numEdges).type), numEdges);
-    constexpr int kFirstLevelWithPoints = 2;
-    for (int level = kFirstLevelWithPoints; level <= maxLevel; ++level) {
-        std::size_t numItems = 0;
-        for (std::size_t edge = 0; edge < numEdges; ++edge) {
-            if (tessellation.getEdgeLevel(edge) == level) {
-                CellType::BorderItem const &item = getItem(edge);
-                int const first = tessellation._firstEdgeCoords[edge];
-                int const numPlaces = tessellation.GetNumEdgeCoords(int(edge));
-                items[numItems++] = {item.points.data(),
-                                     getResult(item.isReversed ? first + numPlaces : first + 1),
-                                     item.isReversed ? -resultDesc.stride : resultDesc.stride};
-            }
-        }
-        if (numItems > 0) {
-            evaluate(Evaluator::GetLatticeMatrix(*getItem(0).type, level), numItems);
-        }
-    }
-    return true;
+    return evaluator.EvaluateInLattice(edges, resultDesc.stride);
 }
 
 template <typename REAL>

@@ -313,8 +313,8 @@ private:
                         internal::BorderEvaluator<REAL> &evaluator,
                         internal::PatchEvaluator<REAL> const *inside, REAL p[],
                         PointDescriptor const &resultDesc) const;
-    bool evaluateLatticeBorder(LevelTessellation const &tessellation, REAL const controlPoints[],
-                               PointDescriptor const &pointDesc, REAL p[],
+    bool evaluateLatticeBorder(LevelTessellation const &tessellation,
+                               internal::BorderEvaluator<REAL> &evaluator, REAL p[],
                                PointDescriptor const &resultDesc) const;
     void evaluateSectionBorder(LevelTessellation const &tessellation,
                                internal::BorderEvaluator<REAL> &evaluator, REAL p[],

@@ -42,6 +42,15 @@ std::vector<double> makeEdgePoints(int level) {
     return points;
 }
 
+// Those of a rate, in the edge's own direction: 1 - i/rate would be rounded.
+std::vector<double> makeRatePoints(int rate) {
+    std::vector<double> points;
+    for (int i = 1; i < rate; ++i) {
+        points.push_back(double(i) / rate);
+    }
+    return points;
+}
+
 } // namespace
 
 template <typename REAL>
@@ -92,7 +101,7 @@ void BorderEvaluator<REAL>::EvaluateVertex(std::size_t vert, REAL *result) {
                           _stride, _size);
         _vertexValues.EvaluateVertex(*item.rings->cell, 0, 0, result);
     } else {
-        SumUpPlaces(GetVertexMatrix(*item.type),
+        SumUpPlaces(getVertexMatrix(*item.type),
                     {_points, _stride, _size, item.points.data(), result, 0});
     }
 }
@@ -103,7 +112,7 @@ void BorderEvaluator<REAL>::setEdge(std::size_t edge) {
         return;
     }
     _edgeNumber = edge;
-    _isReversed = _turns[edge] == 1;
+    _isReversed = IsReversed(edge);
     if (_plain) {
         FaceRings const &face = _plain->GetRings();
         if (RingCell const *const cell = face.GetLongEdge(int(edge), _isReversed)) {
@@ -149,38 +158,42 @@ void BorderEvaluator<REAL>::setEdge(std::size_t edge) {
 template <typename REAL>
 void BorderEvaluator<REAL>::EvaluateEdge(std::size_t edge, int level, REAL *results,
                                          std::ptrdiff_t stride) {
-    setEdge(edge);
-    sumUpInside(getMatrix(*_edge.type, _edge.cell, PatternOf::Border, level,
-                          [&] { return makeEdgePoints(level); }),
-                results, stride);
+    evaluateInside(edge, false, level, results, stride);
 }
 
-// Places are i/rate of the edge in its own direction, not 1 - i/rate, which would be rounded.
 template <typename REAL>
 void BorderEvaluator<REAL>::EvaluateRate(std::size_t edge, int rate, REAL *results,
                                          std::ptrdiff_t stride) {
-    setEdge(edge);
-    auto const makePoints = [&] {
-        std::vector<double> points;
-        for (int i = 1; i < rate; ++i) {
-            points.push_back(double(i) / rate);
-        }
-        return points;
-    };
-    if (rate <= kMaxKeptRate) {
-        sumUpInside(getMatrix(*_edge.type, _edge.cell, PatternOf::BorderRate, rate, makePoints),
-                    results, stride);
-    } else {
-        sumUpInside(makeMatrix(*_edge.type, _edge.cell, makePoints()), results, stride);
-    }
+    evaluateInside(edge, true, rate, results, stride);
 }
 
-// Those of all places inside of the edge, in the direction of the face.
+// Calls function(matrix) with that of the places of a level, or of a rate.
 template <typename REAL>
-void BorderEvaluator<REAL>::sumUpInside(PlaceMatrix<REAL> const &matrix, REAL *results,
-                                        std::ptrdiff_t stride) const {
-    auto const last = std::ptrdiff_t(matrix.GetNumPlaces()) - 1;
-    sumUp(matrix, _isReversed ? results + last * stride : results, _isReversed ? -stride : stride);
+template <typename FUNCTION>
+void BorderEvaluator<REAL>::usePlaces(CellType const &type, RingCell const *cell, bool isRate,
+                                      int level, FUNCTION const &function) {
+    auto const make = [&] {
+        return makeMatrix(type, cell, isRate ? makeRatePoints(level) : makeEdgePoints(level));
+    };
+    if (isRate && level > kMaxKeptRate) {
+        function(make());
+        return;
+    }
+    PatternOf const of = isRate ? PatternOf::BorderRate : PatternOf::Border;
+    function(getPatterns(type, cell)
+                 .template Get<PlaceMatrix<REAL>>(PatternTable::GetKind<REAL>(of), &level,
+                                                  &level + 1, make));
+}
+
+template <typename REAL>
+void BorderEvaluator<REAL>::evaluateInside(std::size_t edge, bool isRate, int level, REAL *results,
+                                           std::ptrdiff_t stride) {
+    setEdge(edge);
+    usePlaces(*_edge.type, _edge.cell, isRate, level, [&](PlaceMatrix<REAL> const &matrix) {
+        auto const last = std::ptrdiff_t(matrix.GetNumPlaces()) - 1;
+        sumUp(matrix, _isReversed ? results + last * stride : results,
+              _isReversed ? -stride : stride);
+    });
 }
 
 // They are kept one by one, since polylines have few in common, and without what a matrix of one place is
@@ -211,9 +224,45 @@ void BorderEvaluator<REAL>::EvaluateKeptPoint(std::size_t edge, Pair const &plac
 }
 
 template <typename REAL>
-PlaceMatrix<REAL> const &BorderEvaluator<REAL>::GetLatticeMatrix(CellType const &type, int level) {
-    return getMatrix(type, nullptr, PatternOf::Border, level,
-                     [&] { return makeEdgePoints(level); });
+bool BorderEvaluator<REAL>::EvaluateInLattice(LatticeEdge const *edges, std::ptrdiff_t resultStride,
+                                              bool areRates) const {
+    CellType::LatticeBorder const &border = _type->GetLatticeBorder();
+    if (!border.isAlike) {
+        return false;
+    }
+    typename ItemSums<REAL>::Item items[kMaxLatticeFaceSize];
+    auto const getItem = [&](std::size_t item) -> CellType::BorderItem const & {
+        return *border.items[item][std::size_t(_turns[item])];
+    };
+    auto const evaluate = [&](PlaceMatrix<REAL> const &matrix, std::size_t numItems) {
+        SumUpPlaces(matrix, ItemSums<REAL>{_points, _stride, _size, items, numItems});
+    };
+    for (std::size_t edge = 0; edge < _numEdges; ++edge) {
+        items[edge] = {getItem(_numEdges + edge).points.data(), edges[edge].results, 0};
+    }
+    evaluate(getVertexMatrix(*getItem(_numEdges).type), _numEdges);
+    bool isDone[kMaxLatticeFaceSize] = {};
+    for (std::size_t first = 0; first < _numEdges; ++first) {
+        int const level = edges[first].level;
+        std::size_t numItems = 0;
+        for (std::size_t edge = first; edge < _numEdges; ++edge) {
+            int const numPlaces = edges[edge].numPlaces;
+            if (isDone[edge] || edges[edge].level != level || numPlaces == 0) {
+                continue;
+            }
+            isDone[edge] = true;
+            CellType::BorderItem const &item = getItem(edge);
+            items[numItems++] = {item.points.data(),
+                                 edges[edge].results +
+                                     std::ptrdiff_t(item.isReversed ? numPlaces : 1) * resultStride,
+                                 item.isReversed ? -resultStride : resultStride};
+        }
+        if (numItems > 0) {
+            usePlaces(*getItem(0).type, nullptr, areRates, level,
+                      [&](PlaceMatrix<REAL> const &matrix) { evaluate(matrix, numItems); });
+        }
+    }
+    return true;
 }
 
 template <typename REAL>
@@ -229,7 +278,7 @@ PlaceMatrix<REAL> BorderEvaluator<REAL>::makeMatrix(CellType const &type, RingCe
 }
 
 template <typename REAL>
-PlaceMatrix<REAL> const &BorderEvaluator<REAL>::GetVertexMatrix(CellType const &type) {
+PlaceMatrix<REAL> const &BorderEvaluator<REAL>::getVertexMatrix(CellType const &type) {
     return type.GetPatterns().template Get<PlaceMatrix<REAL>>(
         PatternTable::GetKind<REAL>(PatternOf::Border), nullptr, nullptr, [&] {
             PlaceMatrix<REAL> matrix(1, std::size_t(type.GetNumPoints()));

@@ -28,6 +28,9 @@ public:
     /// Of the rings of a plain face.
     RingValues<REAL> &GetRingValues() { return _values; }
 
+    /// Whether an edge runs against the face.
+    bool IsReversed(std::size_t edge) const { return _turns[edge] == 1; }
+
     /// Writes the point of a vertex.
     void EvaluateVertex(std::size_t vert, REAL *result);
 
@@ -47,13 +50,24 @@ public:
     /// Numbers of a point.
     std::size_t GetSize() const { return _size; }
 
-    /// @name The stencils of an edge with a level and of a vertex in a lattice, in terms of their points
-    /// @{
-    static PlaceMatrix<REAL> const &GetLatticeMatrix(CellType const &type, int level);
-    static PlaceMatrix<REAL> const &GetVertexMatrix(CellType const &type);
-    /// @}
+    static constexpr int kMaxLatticeFaceSize = 6;
+    /// An edge of a face in a lattice, or the vertex before it alone.
+    struct LatticeEdge {
+        int level;     ///< or the rate
+        int numPlaces; ///< inside
+        REAL *results; ///< of the vertex; those of the places inside are behind it
+    };
+    /// \brief Evaluates the border of a face in a lattice: all vertices together, and all edges with the same places,
+    /// which takes less time than one by one.
+    ///
+    /// \param edges     of all edges, which have levels
+    /// \param areRates  they have rates
+    /// \return          false where edges or vertices are not all of one type: nothing is written then
+    bool EvaluateInLattice(LatticeEdge const *edges, std::ptrdiff_t resultStride,
+                           bool areRates = false) const;
 
 private:
+    static PlaceMatrix<REAL> const &getVertexMatrix(CellType const &type);
     // What the places of an edge are sums of.
     struct Sources {
         CellType const *type;
@@ -68,20 +82,16 @@ private:
     static PatternTable &getPatterns(CellType const &type, RingCell const *cell) {
         return cell ? cell->GetPatterns() : type.GetPatterns();
     }
-    // Those that makePoints() gives, when they are first asked for with a key.
-    template <typename MAKE>
-    static PlaceMatrix<REAL> const &getMatrix(CellType const &type, RingCell const *cell,
-                                              PatternOf of, int key, MAKE const &makePoints) {
-        return getPatterns(type, cell)
-            .template Get<PlaceMatrix<REAL>>(PatternTable::GetKind<REAL>(of), &key, &key + 1,
-                                             [&] { return makeMatrix(type, cell, makePoints()); });
-    }
+    template <typename FUNCTION>
+    static void usePlaces(CellType const &type, RingCell const *cell, bool isRate, int level,
+                          FUNCTION const &function);
+    void evaluateInside(std::size_t edge, bool isRate, int level, REAL *results,
+                        std::ptrdiff_t stride);
     // What a plain face has no rings for.
     CellType::BorderItem const &getItem(std::size_t item) const {
         return _plain ? _plain->GetLatticeItem(_turns, item) : _type->GetBorderItem(_turns, item);
     }
     void setEdge(std::size_t edge);
-    void sumUpInside(PlaceMatrix<REAL> const &matrix, REAL *results, std::ptrdiff_t stride) const;
     void sumUp(PlaceMatrix<REAL> const &matrix, REAL *results, std::ptrdiff_t resultStride) const {
         SumUpPlaces(matrix,
                     {_edge.points, _edge.stride, _size, _edge.indices, results, resultStride});

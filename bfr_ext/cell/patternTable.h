@@ -21,6 +21,7 @@ enum class PatternOf {
     BorderPlace,
     BorderRate,
     Rates,
+    RatesWithEdge,
     RateDerivatives,
     RateDerivativesOnEdge,
     Leaf,

@@ -33,6 +33,32 @@ void forEachBlock(PatternTable &patterns, int kind, std::array<int, SIZE> const 
     }
 }
 
+void addToRuns(int row, int place, std::vector<PlaceRun> &runs) {
+    bool const isFollowing = !runs.empty() && runs.back().row + runs.back().count == row &&
+                             runs.back().place + runs.back().count == place &&
+                             row % PlaceRun::kMaxBlock != 0;
+    if (isFollowing) {
+        ++runs.back().count;
+    } else {
+        runs.push_back({row, place, 1});
+    }
+}
+
+// Those places of a face that a child of it has, and which of all they are.
+std::vector<BfrPlace> selectPlaces(std::vector<BfrPlace> const &places, std::size_t child,
+                                   int faceSize, std::vector<PlaceRun> &runs) {
+    std::vector<BfrPlace> result;
+    for (std::size_t i = 0; i < places.size(); ++i) {
+        BasePoint const &point = places[i].point;
+        CellStep const step = FindCellStep(true, point.sector, point.coords);
+        if (step.child == child) {
+            addToRuns(int(result.size()), int(i), runs);
+            result.push_back(MoveToChild(places[i], step, faceSize));
+        }
+    }
+    return result;
+}
+
 } // namespace
 
 // Only quads have two inner rates.  Others have one, which follows from the number of places, as the place does if it
@@ -81,84 +107,147 @@ RateEvaluator<REAL>::RateEvaluator(Bfr::Tessellation const &tessellation,
                                    BorderEvaluator<REAL> &border, REAL *const results[3],
                                    std::ptrdiff_t resultStride)
     : _tessellation(tessellation), _border(border), _results{results[0], results[1], results[2]},
-      _resultStride(resultStride), _inner(tessellation) {
-    int first = 0;
-    for (int edge = 0; edge < tessellation.GetFaceSize(); ++edge) {
-        _firstPlaces.push_back(first);
-        first += tessellation.GetNumEdgeCoords(edge) + 1;
-    }
-}
+      _resultStride(resultStride), _inner(tessellation) {}
 
 template <typename REAL>
 void RateEvaluator<REAL>::Evaluate(CellType const &type, REAL const *points,
                                    std::ptrdiff_t stride) {
-    evaluateBorder();
-    evaluate({type, nullptr, 0, points, stride, nullptr});
+    Source const source = {type, nullptr, 0, points, stride, nullptr};
+    bool const isBorderDone = type.IsInLattice() && evaluateLatticeBorder();
+    forEachEdge([&](int edge, int rate, int first) {
+        if (!isBorderDone) {
+            evaluateVertex(edge, first);
+            evaluateEdge(edge, rate, first);
+        }
+        if (_results[1]) {
+            evaluateDerivativesOnEdge(source, edge, rate, first);
+        }
+    });
+    evaluateInside(source);
 }
 
 template <typename REAL>
 void RateEvaluator<REAL>::Evaluate(PlainFaceType const &type) {
-    evaluateBorder();
+    // What they have taken of memory is kept for the next face.
+    static thread_local std::vector<int> indices;
     FaceRings const &face = type.GetRings();
     RingValues<REAL> const &values = _border.GetRingValues();
-    for (std::size_t child = 0; child <= _firstPlaces.size(); ++child) {
+    auto const getSource = [&](std::size_t child) -> Source {
         RingCell const &cell = face.GetChild(child);
-        _indices.resize(cell.GetColumns().size());
-        face.FindChildIndices(child, _indices.data());
-        evaluate({cell.GetType(), &cell, child, values.GetPoints(),
-                  std::ptrdiff_t(values.GetPaddedSize()), _indices.data()});
-    }
-}
-
-template <typename REAL>
-void RateEvaluator<REAL>::evaluateBorder() {
-    for (std::size_t edge = 0; edge < _firstPlaces.size(); ++edge) {
-        int const rate = _tessellation.GetNumEdgeCoords(int(edge)) + 1;
-        _border.EvaluateVertex(edge, getResult(0, _firstPlaces[edge]));
-        if (rate > 1) {
-            _border.EvaluateRate(edge, rate, getResult(0, _firstPlaces[edge] + 1), _resultStride);
+        indices.resize(cell.GetColumns().size());
+        face.FindChildIndices(child, indices.data());
+        return {cell.GetType(),
+                &cell,
+                child,
+                values.GetPoints(),
+                std::ptrdiff_t(values.GetPaddedSize()),
+                indices.data()};
+    };
+    // One matrix for both takes less time than two; but there would be one for each pair of rates.
+    bool const isUniform = _tessellation.IsUniform() && _inner.GetSize() <= kBlockSize;
+    forEachEdge([&](int edge, int rate, int first) {
+        evaluateVertex(edge, first);
+        bool const isReversed = _border.IsReversed(std::size_t(edge));
+        HalfWithEdge const *const half =
+            isUniform && rate > 1 ? face.GetHalfWithEdge(edge, isReversed) : nullptr;
+        if (half) {
+            indices.resize(half->places.GetColumns().size());
+            face.FindHalfIndices(edge, isReversed, indices.data());
+            evaluateHalf({half->half->GetType(), half->half.get(), std::size_t(edge) + 1,
+                          values.GetPoints(), std::ptrdiff_t(values.GetPaddedSize()),
+                          indices.data()},
+                         *half, isReversed, rate, first);
+            if (!_results[1]) {
+                return;
+            }
+        } else {
+            evaluateEdge(edge, rate, first);
         }
+        Source const source = getSource(std::size_t(edge) + 1);
+        if (!half) {
+            evaluateInside(source, PatternOf::Rates);
+        }
+        if (_results[1]) {
+            evaluateInside(source, PatternOf::RateDerivatives);
+            evaluateDerivativesOnEdge(source, edge, rate, first);
+        }
+    });
+    evaluateInside(getSource(0));
+}
+
+// Calls function(edge, rate, number of the place of its first vertex).
+template <typename REAL>
+template <typename FUNCTION>
+void RateEvaluator<REAL>::forEachEdge(FUNCTION const &function) const {
+    int first = 0;
+    for (int edge = 0; edge < _tessellation.GetFaceSize(); ++edge) {
+        int const rate = _tessellation.GetNumEdgeCoords(edge) + 1;
+        function(edge, rate, first);
+        first += rate;
     }
 }
 
 template <typename REAL>
-void RateEvaluator<REAL>::evaluate(Source const &source) {
+bool RateEvaluator<REAL>::evaluateLatticeBorder() const {
+    using Border = BorderEvaluator<REAL>;
+    typename Border::LatticeEdge edges[Border::kMaxLatticeFaceSize];
+    forEachEdge([&](int edge, int rate, int first) {
+        edges[edge] = {rate, rate - 1, getResult(0, first)};
+    });
+    return _border.EvaluateInLattice(edges, _resultStride, true);
+}
+
+template <typename REAL>
+void RateEvaluator<REAL>::evaluateVertex(int edge, int first) const {
+    _border.EvaluateVertex(std::size_t(edge), getResult(0, first));
+}
+
+template <typename REAL>
+void RateEvaluator<REAL>::evaluateEdge(int edge, int rate, int first) const {
+    if (rate > 1) {
+        _border.EvaluateRate(std::size_t(edge), rate, getResult(0, first + 1), _resultStride);
+    }
+}
+
+template <typename REAL>
+void RateEvaluator<REAL>::evaluateInside(Source const &source) {
     evaluateInside(source, PatternOf::Rates);
-    if (!_results[1]) {
-        return;
+    if (_results[1]) {
+        evaluateInside(source, PatternOf::RateDerivatives);
     }
-    evaluateInside(source, PatternOf::RateDerivatives);
-    // Children beside an edge have the places on it.
-    int const numEdges = int(_firstPlaces.size());
-    int const begin = source.cell ? std::max(int(source.child) - 1, 0) : 0;
-    int const end = source.cell ? int(source.child) : numEdges;
-    for (int edge = begin; edge < end; ++edge) {
-        evaluateDerivativesOnEdge(source, edge);
-    }
+}
+
+template <typename REAL>
+std::array<int, 6> RateEvaluator<REAL>::getKey(Source const &source) const {
+    Bfr::Parameterization const parameterization = _tessellation.GetParameterization();
+    return {parameterization.GetFaceSize(),
+            int(parameterization.GetType()),
+            int(_inner.GetSize()),
+            _inner.GetRate(0),
+            _inner.GetRate(1),
+            int(source.child)};
 }
 
 template <typename REAL>
 void RateEvaluator<REAL>::evaluateInside(Source const &source, PatternOf of) {
-    std::array<int, 6> const key = {
-        int(_firstPlaces.size()), int(_tessellation.GetParameterization().GetType()),
-        int(_inner.GetSize()),    _inner.GetRate(0),
-        _inner.GetRate(1),        int(source.child)};
+    bool const areDerivatives = of == PatternOf::RateDerivatives;
     forEachBlock<Matrices>(
-        source.GetPatterns(), PatternTable::GetKind<REAL>(of), key, _inner.GetSize(),
+        source.GetPatterns(), PatternTable::GetKind<REAL>(of), getKey(source), _inner.GetSize(),
         [&](std::size_t begin, std::size_t end) {
-            return makeInside(source, _inner.Find(begin, end), int(_firstPlaces.size()),
-                              of == PatternOf::RateDerivatives);
+            return makeInside(source, _inner.Find(begin, end), _tessellation.GetFaceSize(),
+                              areDerivatives);
         },
         [&](Matrices const &matrices, std::size_t begin) {
-            sumUp(source, matrices, std::size_t(_tessellation.GetNumBoundaryCoords()) + begin);
+            sumUp(source, matrices, areDerivatives,
+                  _tessellation.GetNumBoundaryCoords() + int(begin));
         });
 }
 
 template <typename REAL>
-void RateEvaluator<REAL>::evaluateDerivativesOnEdge(Source const &source, int edge) {
+void RateEvaluator<REAL>::evaluateDerivativesOnEdge(Source const &source, int edge, int rate,
+                                                    int first) const {
     Bfr::Parameterization const parameterization = _tessellation.GetParameterization();
     int const size = parameterization.GetFaceSize();
-    int const rate = _tessellation.GetNumEdgeCoords(edge) + 1;
     forEachBlock<Matrices>(
         source.GetPatterns(), PatternTable::GetKind<REAL>(PatternOf::RateDerivativesOnEdge),
         std::array<int, 4>{size, int(parameterization.GetType()), edge, rate}, std::size_t(rate),
@@ -174,8 +263,32 @@ void RateEvaluator<REAL>::evaluateDerivativesOnEdge(Source const &source, int ed
             return makeMatrices(source, places, true);
         },
         [&](Matrices const &matrices, std::size_t begin) {
-            sumUp(source, matrices, std::size_t(_firstPlaces[std::size_t(edge)]) + begin);
+            sumUp(source, matrices, true, first + int(begin));
         });
+}
+
+// The places inside of a half cell and of the edge beside it.
+template <typename REAL>
+void RateEvaluator<REAL>::evaluateHalf(Source const &source, HalfWithEdge const &half,
+                                       bool isReversed, int rate, int first) {
+    // The half cell of an edge belongs to a direction of it.
+    std::array<int, 6> const key = getKey(source);
+    auto const &matrices = source.GetPatterns().template Get<Matrices>(
+        PatternTable::GetKind<REAL>(PatternOf::RatesWithEdge), key.data(), key.data() + key.size(),
+        [&] {
+            return makeHalf(source, _inner.Find(0, _inner.GetSize()), half, isReversed,
+                            _tessellation.GetFaceSize(), rate);
+        });
+    // Those of the edge come last.
+    static thread_local std::vector<PlaceRun> runs;
+    runs = matrices.runs;
+    int const numInside = int(matrices.matrices[0].GetNumPlaces()) - (rate - 1);
+    for (PlaceRun &run : runs) {
+        run.place += run.row < numInside ? _tessellation.GetNumBoundaryCoords() : first + 1;
+    }
+    SumUpPlaces(matrices.matrices[0],
+                {source.points, source.stride, _border.GetSize(), source.indices, _results[0],
+                 _resultStride, runs.data(), runs.size()});
 }
 
 // The matrices of those places that the source has.
@@ -186,27 +299,42 @@ RateEvaluator<REAL>::makeInside(Source const &source, std::vector<BfrPlace> cons
     if (!source.cell) {
         return makeMatrices(source, places, hasDerivatives);
     }
-    std::vector<BfrPlace> ofChild;
     std::vector<PlaceRun> runs;
-    for (std::size_t i = 0; i < places.size(); ++i) {
-        BasePoint const &point = places[i].point;
-        CellStep const step = FindCellStep(true, point.sector, point.coords);
-        if (step.child != source.child) {
-            continue;
-        }
-        int const row = int(ofChild.size());
-        ofChild.push_back(MoveToChild(places[i], step, faceSize));
-        bool const isFollowing = !runs.empty() && runs.back().place + runs.back().count == int(i) &&
-                                 row % PlaceRun::kMaxBlock != 0;
-        if (isFollowing) {
-            ++runs.back().count;
-        } else {
-            runs.push_back({row, int(i), 1});
-        }
-    }
+    std::vector<BfrPlace> const ofChild = selectPlaces(places, source.child, faceSize, runs);
     Matrices matrices = makeMatrices(source, ofChild, hasDerivatives);
     matrices.runs = std::move(runs);
     return matrices;
+}
+
+// What the edge makes is, to the bit, what BorderEvaluator makes of it: zeros change no sum of numbers that are finite.
+template <typename REAL>
+typename RateEvaluator<REAL>::Matrices
+RateEvaluator<REAL>::makeHalf(Source const &source, std::vector<BfrPlace> const &places,
+                              HalfWithEdge const &half, bool isReversed, int faceSize, int rate) {
+    RingCell const &longEdge = *half.longEdge;
+    bool const isOfStep = source.cell->IsInner();
+    Matrices result;
+    std::vector<BfrPlace> const inside = selectPlaces(places, source.child, faceSize, result.runs);
+    std::size_t const numPlaces = inside.size() + std::size_t(rate) - 1;
+    PlaceMatrix<REAL> &matrix =
+        result.matrices.emplace_back(numPlaces, half.places.GetColumns().size());
+    std::vector<double> ordered;
+    CellStencil stencil(source.type, isOfStep ? StencilOf::Step : StencilOf::Points);
+    for (std::size_t row = 0; row < inside.size(); ++row) {
+        stencil.Find(inside[row].point, false);
+        source.cell->GetPlaces().Order(stencil.GetWeights(), ordered);
+        matrix.Set(row, half.places.Spread(source.cell->GetPlaces(), ordered));
+    }
+    BorderStencil border;
+    for (int i = 1; i < rate; ++i) {
+        int const row = int(inside.size()) + i - 1;
+        border.Find(longEdge.GetType(), double(isReversed ? rate - i : i) / rate,
+                    longEdge.IsInner() ? StencilOf::Step : StencilOf::Points);
+        longEdge.GetPlaces().Order(border.GetWeights(), ordered);
+        matrix.Set(std::size_t(row), half.places.Spread(longEdge.GetPlaces(), ordered));
+        addToRuns(row, i - 1, result.runs);
+    }
+    return result;
 }
 
 template <typename REAL>
@@ -257,17 +385,17 @@ RateEvaluator<REAL>::makeMatrices(Source const &source, std::vector<BfrPlace> co
 }
 
 template <typename REAL>
-void RateEvaluator<REAL>::sumUp(Source const &source, Matrices const &matrices,
-                                std::size_t firstPlace) const {
+void RateEvaluator<REAL>::sumUp(Source const &source, Matrices const &matrices, bool areDerivatives,
+                                int firstPlace) const {
     // No runs would stand for all places.
     if (matrices.matrices[0].GetNumPlaces() == 0) {
         return;
     }
-    std::size_t const firstKind = matrices.matrices.size() == 1 ? 0 : 1;
-    for (std::size_t i = 0; i < matrices.matrices.size(); ++i) {
-        SumUpPlaces(matrices.matrices[i],
+    std::size_t kind = areDerivatives ? 1 : 0;
+    for (PlaceMatrix<REAL> const &matrix : matrices.matrices) {
+        SumUpPlaces(matrix,
                     {source.points, source.stride, _border.GetSize(), source.indices,
-                     getResult(firstKind + i, int(firstPlace)), _resultStride,
+                     getResult(kind++, firstPlace), _resultStride,
                      matrices.runs.empty() ? nullptr : matrices.runs.data(), matrices.runs.size()});
     }
 }

@@ -7,6 +7,7 @@
 
 #include <opensubdiv/bfr/tessellation.h>
 
+#include <array>
 #include <vector>
 
 namespace OpenSubdivHex::BfrExt::internal {
@@ -69,18 +70,28 @@ private:
     // Of places, by row: of the points, or of the derivatives by u and v.
     struct Matrices {
         std::vector<PlaceMatrix<REAL>> matrices;
-        std::vector<PlaceRun> runs;
+        std::vector<PlaceRun> runs; ///< none: all places in turn
     };
 
     static Matrices makeMatrices(Source const &source, std::vector<BfrPlace> const &places,
                                  bool hasDerivatives);
     static Matrices makeInside(Source const &source, std::vector<BfrPlace> const &places,
                                int faceSize, bool hasDerivatives);
-    void evaluateBorder();
-    void evaluate(Source const &source);
+    static Matrices makeHalf(Source const &source, std::vector<BfrPlace> const &places,
+                             HalfWithEdge const &half, bool isReversed, int faceSize, int rate);
+    template <typename FUNCTION>
+    void forEachEdge(FUNCTION const &function) const;
+    bool evaluateLatticeBorder() const;
+    void evaluateVertex(int edge, int first) const;
+    void evaluateEdge(int edge, int rate, int first) const;
+    std::array<int, 6> getKey(Source const &source) const;
+    void evaluateInside(Source const &source);
     void evaluateInside(Source const &source, PatternOf of);
-    void evaluateDerivativesOnEdge(Source const &source, int edge);
-    void sumUp(Source const &source, Matrices const &matrices, std::size_t firstPlace) const;
+    void evaluateHalf(Source const &source, HalfWithEdge const &half, bool isReversed, int rate,
+                      int first);
+    void evaluateDerivativesOnEdge(Source const &source, int edge, int rate, int first) const;
+    void sumUp(Source const &source, Matrices const &matrices, bool areDerivatives,
+               int firstPlace) const;
     REAL *getResult(std::size_t kind, int place) const {
         return _results[kind] + std::ptrdiff_t(place) * _resultStride;
     }
@@ -90,8 +101,6 @@ private:
     REAL *const _results[3];
     std::ptrdiff_t const _resultStride;
     BfrInnerPlaces _inner;
-    std::vector<int> _firstPlaces; // by edge
-    std::vector<int> _indices;
 };
 
 extern template class RateEvaluator<float>;

@@ -93,17 +93,14 @@ std::vector<Row> const &GetRows() {
         result.push_back({"surface-derivatives",
                           "tessellated surfaces with derivatives, per point, 1 thread",
                           "Bfr::Surface::Evaluate", 8, 15});
-        for (bool const isRegular : {true, false}) {
-            std::string const name = isRegular ? "surface-rate" : "surface-rate-irregular";
-            std::string const work = isRegular ? "surfaces tessellated at rate 8"
-                                               : "irregular surfaces tessellated at rate 8";
-            double const atLeast = isRegular ? 6 : 3;
-            result.push_back({name, work + ", per point, 1 thread", "Bfr::Surface::Evaluate",
-                              atLeast, 2 * atLeast});
-            result.push_back({name + "-derivatives",
-                              work + ", with derivatives, per point, 1 thread",
-                              "Bfr::Surface::Evaluate", atLeast, 2 * atLeast});
-        }
+        result.push_back({"surface-rate", "surfaces tessellated at rate 8, per point, 1 thread",
+                          "Bfr::Surface::Evaluate", 3, 6});
+        result.push_back({"surface-rate-regular",
+                          "regular surfaces tessellated at rate 8, per point, 1 thread",
+                          "Bfr::Surface::Evaluate", 6, 12});
+        result.push_back({"surface-rate-derivatives",
+                          "surfaces tessellated at rate 8, with derivatives, per point, 1 thread",
+                          "Bfr::Surface::Evaluate", 3, 6});
         result.push_back({"surface-cold", "making surfaces, empty cache, per face, 1 thread",
                           "Bfr::RefinerSurfaceFactory", 3, 10});
         result.push_back({"surface-warm", "making surfaces, full cache, per face, 1 thread",
