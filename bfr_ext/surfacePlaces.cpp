@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <numeric>
-#include <utility>
 
 namespace OpenSubdivHex::BfrExt {
 
@@ -47,10 +46,11 @@ SurfacePlaces<REAL>::Create(SurfaceFactory const &factory, int numPlaces, Index 
                 break;
             }
         }
-        places->_places.push_back({number, {uvs[2 * number], uvs[2 * number + 1]}});
+        REAL const *const uv = uvs + 2 * std::ptrdiff_t(number);
+        places->_places.push_back({number, {uv[0], uv[1]}});
     }
     places->_firstPlaces.push_back(Index(places->_places.size()));
-    if (!FarExt::internal::Report(std::move(result), status)) {
+    if (!FarExt::internal::Report(result, status)) {
         return nullptr;
     }
     return places;

@@ -66,9 +66,9 @@ struct KnownPolygon {
     }
 
     static KnownPolygon const &Get(int size) {
-        static KnownPolygon const all[] = {KnownPolygon(3), KnownPolygon(4), KnownPolygon(5),
-                                           KnownPolygon(6), KnownPolygon(7), KnownPolygon(8)};
-        return all[size - 3];
+        static KnownPolygon const kAll[] = {KnownPolygon(3), KnownPolygon(4), KnownPolygon(5),
+                                            KnownPolygon(6), KnownPolygon(7), KnownPolygon(8)};
+        return kAll[size - 3];
     }
 
     Pair center;

@@ -361,8 +361,8 @@ std::vector<double> CellType::FindPatchPoints(PatchAges const &ages) const {
     if (!FindCellPatchPoints(_cell, _rules.sdcOptions, _rules.schemeOptions, _rules.interpolation,
                              ages, rows)
              .IsOk()) {
-        rows.assign(std::size_t(GetNumCellPatches(_cell.kind, GetNumCorners()) * kNumPatchPoints *
-                                GetNumPoints()),
+        rows.assign(std::size_t(GetNumCellPatches(_cell.kind, GetNumCorners())) *
+                        std::size_t(kNumPatchPoints) * std::size_t(GetNumPoints()),
                     std::numeric_limits<double>::quiet_NaN());
     }
     return rows;

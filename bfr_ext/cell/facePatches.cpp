@@ -6,18 +6,13 @@
 #include "refinedCells.h"
 
 #include "far_ext/patch/cellPatchPoints.h"
+#include "far_ext/vtr/inline.h"
 
 #include <algorithm>
 #include <cmath>
 #include <type_traits>
 #include <utility>
 #include <vector>
-
-#if defined(__GNUC__)
-#define OPENSUBDIVHEX_INLINE inline __attribute__((always_inline))
-#else
-#define OPENSUBDIVHEX_INLINE inline
-#endif
 
 namespace OpenSubdivHex::BfrExt::internal {
 

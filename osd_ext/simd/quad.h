@@ -2,13 +2,9 @@
 #ifndef OPENSUBDIVHEX_OSD_EXT_SIMD_QUAD_H
 #define OPENSUBDIVHEX_OSD_EXT_SIMD_QUAD_H
 
-#include <cstring>
+#include "far_ext/vtr/inline.h"
 
-#if defined(__GNUC__)
-#define OPENSUBDIVHEX_INLINE inline __attribute__((always_inline))
-#else
-#define OPENSUBDIVHEX_INLINE inline
-#endif
+#include <cstring>
 
 namespace OpenSubdivHex::OsdExt::internal {
 // Files that are compiled for other processors have quads of their own: none may be linked with
