@@ -104,7 +104,7 @@ public:
     std::vector<int> &GetRowSizes() { return this->_sizes; }
     std::vector<int> &GetRowOffsets() { return this->_offsets; }
 
-    typename internal::LimitMultiplier<REAL>::Place GetPlace(Index row) {
+    internal::LimitStencilPlace<REAL> GetPlace(Index row) {
         auto const offset = std::size_t(this->_offsets[std::size_t(row)]);
         bool const hasDerivatives = !duWeights().empty();
         return {this->_indices.data() + offset, this->_weights.data() + offset,
@@ -351,10 +351,11 @@ public:
             _lattice->Fill([&](Index row) { return _table->GetPlace(row); });
         }
         forEachGroup([&](Multiplier &multiplier, Index const *rows, Index group) {
-            typename Multiplier::Place places[internal::kMaxLimitRows];
+            internal::LimitStencilPlace<REAL> places[internal::kMaxLimitRows] = {};
             for (int row = 0; row < multiplier.GetNumRows(); ++row) {
-                places[row] = rows[row] != Far::INDEX_INVALID ? _table->GetPlace(rows[row])
-                                                              : typename Multiplier::Place();
+                if (rows[row] != Far::INDEX_INVALID) {
+                    places[row] = _table->GetPlace(rows[row]);
+                }
             }
             multiplier.Fill(kept[std::size_t(group / kRange)].Get(group % kRange), places);
         });

@@ -40,7 +40,7 @@ struct PrimvarRows::Reader {
         PrimvarRows *rows;
         Index point;
     };
-    struct Sources {
+    struct SourceOfVertex {
         Source operator[](Index vert) const { return {valueOfVertex ? valueOfVertex[vert] : vert}; }
 
         Index const *valueOfVertex; ///< null: vertices are their own sources
@@ -60,7 +60,7 @@ struct PrimvarRows::Reader {
                       : nullptr} {}
 
     RefinementRows const refinementRows;
-    Sources const sources;
+    SourceOfVertex const sources;
     Index nextFace = 0;
     Index nextVVertex = 0;
 };

@@ -53,13 +53,13 @@ public:
         auto const places =
             ParallelSums<PolygonPlace>(_level.GetNumFaces(), [&](Index begin, Index end) {
                 PolygonPlace sum;
-                forEachRun(begin, end, [&](FaceRun const &run) { sum += getSize(run); });
+                forEachRun(begin, end, [&](DrawnRun const &run) { sum += getSize(run); });
                 return sum;
             });
         resize(places.back());
         ParallelForRange(_level.GetNumFaces(), [&](Index begin, Index end) {
             PolygonPlace place = places[std::size_t(begin / FarExt::internal::kParallelRange)];
-            forEachRun(begin, end, [&](FaceRun const &run) {
+            forEachRun(begin, end, [&](DrawnRun const &run) {
                 writePolygons(run, place);
                 writeCorners(run, place);
                 place += getSize(run);
@@ -107,13 +107,13 @@ private:
     }
 
     // Whole faces that follow one another; or, where half is not negative, that half of one face.
-    struct FaceRun {
+    struct DrawnRun {
         Index begin;
         Index end;
         int half;
     };
 
-    PolygonPlace getSize(FaceRun const &run) const {
+    PolygonPlace getSize(DrawnRun const &run) const {
         if (run.half >= 0) {
             return {1, kNumHalfCorners};
         }
@@ -135,11 +135,11 @@ private:
                 return;
             }
             if (next < face) {
-                function(FaceRun{next, face, -1});
+                function(DrawnRun{next, face, -1});
             }
             for (int half = 0; half < 2; ++half) {
                 if ((parts >> half & 1u) != 0) {
-                    function(FaceRun{face, face + 1, half});
+                    function(DrawnRun{face, face + 1, half});
                 }
             }
             next = face + 1;
@@ -158,7 +158,7 @@ private:
             }
         }
         if (next < end) {
-            function(FaceRun{next, end, -1});
+            function(DrawnRun{next, end, -1});
         }
     }
 
@@ -181,7 +181,7 @@ private:
         resizeIf(!_options.labels.empty(), _result.labels, size.polygon);
     }
 
-    void writePolygons(FaceRun const &run, PolygonPlace const &place) {
+    void writePolygons(DrawnRun const &run, PolygonPlace const &place) {
         int const half = std::max(run.half, 0);
         std::size_t polygon = place.polygon;
         for (Index face = run.begin; face < run.end; ++face, ++polygon) {
@@ -195,7 +195,7 @@ private:
         }
     }
 
-    void writeCorners(FaceRun const &run, PolygonPlace const &place) {
+    void writeCorners(DrawnRun const &run, PolygonPlace const &place) {
         int *const vertices = _result.vertices.data() + place.corner;
         if (!_options.splitVertices) {
             Index const first = _mesh.faceFirstCorner[run.begin];

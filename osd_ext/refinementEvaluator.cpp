@@ -4,15 +4,14 @@
 #include "far_ext/vtr/hierarchy.h"
 #include "far_ext/vtr/parallel.h"
 #include "osd_ext/refinement/evaluationChecks.h"
-#include "osd_ext/refinement/groupSelection.h"
 #include "osd_ext/refinement/preparedLimit.h"
+#include "osd_ext/refinement/refinementKernel.h"
 
 #include <algorithm>
 #include <atomic>
 #include <cmath>
 #include <limits>
 #include <numeric>
-#include <optional>
 #include <string>
 
 namespace OpenSubdivHex::OsdExt {
@@ -135,12 +134,7 @@ private:
     // Levels below the one asked for, by whether they are odd; that one, too, for its limit.
     FarExt::internal::Buffer<float> _scratch[2];
 
-    struct LimitOfLevel {
-        internal::PreparedLimit prepared;
-        // Of the refinement to the level, what the limit depends on; nothing: all of it.
-        std::optional<internal::RefinementGroups> lastGroups;
-    };
-    std::vector<std::unique_ptr<LimitOfLevel>> _limits; // by level; null: not yet asked
+    std::vector<std::unique_ptr<internal::PreparedLimit>> _limits; // by level; null: not yet asked
 };
 
 RefinementEvaluator::Impl::Impl(TopologyRefiner const &topologyRefiner, Options options)
@@ -254,7 +248,7 @@ CallStatus RefinementEvaluator::Impl::PrepareLimit(int level) {
         return invalidArgument("there is a limit for INTERPOLATE_VERTEX alone");
     }
     _limits.resize(numElements.size());
-    std::unique_ptr<LimitOfLevel> &limit = _limits[std::size_t(level)];
+    std::unique_ptr<internal::PreparedLimit> &limit = _limits[std::size_t(level)];
     if (limit) {
         return CallStatus();
     }
@@ -266,29 +260,18 @@ CallStatus RefinementEvaluator::Impl::PrepareLimit(int level) {
     }
     FarExt::internal::LimitRows rows(hierarchy.mesh.levels[std::size_t(level)],
                                      refiner.GetSchemeOptions(), refiner.GetHexSchemeOptions());
-    auto ofLevel = std::make_unique<LimitOfLevel>();
-    result = ofLevel->prepared.Prepare(hierarchy.mesh, refiner.GetHexSchemeOptions(), rows);
-    if (!result.IsOk()) {
-        return result;
+    auto prepared = std::make_unique<internal::PreparedLimit>();
+    result = prepared->Prepare(hierarchy.mesh, refiner.GetHexSchemeOptions(), rows);
+    if (result.IsOk()) {
+        limit = std::move(prepared);
     }
-    if (level > 0) {
-        std::vector<unsigned char> isSource =
-            ofLevel->prepared.FindSources(numElements[std::size_t(level)]);
-        if (!isSource.empty()) {
-            auto const last = std::size_t(level) - 1;
-            ofLevel->lastGroups = internal::SelectGroups(
-                _refinements[last], hierarchy.mesh.refinements[last], std::move(isSource));
-        }
-    }
-    limit = std::move(ofLevel);
     return result;
 }
 
 void RefinementEvaluator::Impl::EvaluateLimit(Source values,
                                               std::vector<Destination> const &outputs, int length,
                                               int level) {
-    LimitOfLevel &ofLevel = *_limits[std::size_t(level)];
-    internal::PreparedLimit &limit = ofLevel.prepared;
+    internal::PreparedLimit const &limit = *_limits[std::size_t(level)];
     float const scale = findScale(values, length, numElements[0]);
     values = toVertices(values, length, scale);
     if (level > 0 && limit.IsNeeded(0) && values.data != _controlValues.data()) {
@@ -303,11 +286,8 @@ void RefinementEvaluator::Impl::EvaluateLimit(Source values,
     for (int made = 0; made <= last; ++made) {
         if (made > 0) {
             Destination const next = {_scratch[made % 2].data(), length};
-            internal::RefinementTask task = {&_refinements[std::size_t(made) - 1], values, next};
-            if (made == level && ofLevel.lastGroups) {
-                task.groups = &*ofLevel.lastGroups;
-            }
-            internal::RefineElements({task}, length);
+            internal::RefineElements({{&_refinements[std::size_t(made) - 1], values, next}},
+                                     length);
             values = {next.data, next.stride};
         }
         limit.Evaluate(made, values, level > 0, length, outputs);

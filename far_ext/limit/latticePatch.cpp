@@ -133,13 +133,9 @@ int LatticePatch::MirrorPlace(int place) const {
     return (orbit + 1 - 2 * isSecond) * _faceSize + local;
 }
 
-LatticePatch::FaceCorner LatticePatch::follow(Level const &level, FaceCorner from, bool isAcross) {
-    if (!isAcross) {
-        return {from.face, level.GetNextCorner(from.face, from.corner)};
-    }
-    Index const edge = level.faceEdges[from.corner];
-    int const side = level.GetSideCorner(edge, 0) == from.corner ? 1 : 0;
-    return {level.edgeFaces[edge][side], level.GetSideCorner(edge, side)};
+FaceCorner LatticePatch::follow(Level const &level, FaceCorner from, bool isAcross) {
+    return isAcross ? level.GetCornerAcross(from.corner)
+                    : FaceCorner{from.face, level.GetNextCorner(from.face, from.corner)};
 }
 
 bool LatticePatch::areDifferent(Index const *verts) const {

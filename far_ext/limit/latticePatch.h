@@ -78,10 +78,6 @@ public:
     }
 
 private:
-    struct FaceCorner {
-        Index face;
-        Index corner;
-    };
     /// The way to a corner: from another one to the next of its face, or to the corner there on the
     /// other side of the edge.
     struct Step {

@@ -92,7 +92,7 @@ void LatticeStencils<REAL>::sort(OfSet const &of, Index face, SortedFace &sorted
 
 template <typename REAL>
 void LatticeStencils<REAL>::write(OfSet const &of, int output, SortedFace const &sorted,
-                                  Place const &place) const {
+                                  LimitStencilPlace<REAL> const &place) const {
     Weights const &weights = of.weights[std::size_t(output)];
     auto const &entries = sorted.ofSupports[std::size_t(of.supports[std::size_t(output)])];
     std::copy_n(entries.verts, entries.size, place.indices);
@@ -115,7 +115,7 @@ int LatticeStencils<REAL>::countVertexSize(LimitRow const &row) const {
 }
 
 template <typename REAL>
-void LatticeStencils<REAL>::writeVertex(Index vert, Place const &place) const {
+void LatticeStencils<REAL>::writeVertex(Index vert, LimitStencilPlace<REAL> const &place) const {
     Index sources[kMaxPlaces];
     LimitRow const row = _faces.GetRow(vert, sources);
     int order[kMaxPlaces];

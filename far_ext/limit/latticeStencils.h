@@ -20,7 +20,6 @@ template <typename REAL>
 class LatticeStencils {
 public:
     using Index = Far::Index;
-    using Place = LimitStencilPlace<REAL>;
 
     /// \param faces  are referred to, and have their masks
     LatticeStencils(LatticeFaces const &faces, bool hasDerivatives);
@@ -94,9 +93,10 @@ private:
         }
     }
     static void sort(OfSet const &of, Index face, SortedFace &sorted);
-    void write(OfSet const &of, int output, SortedFace const &sorted, Place const &place) const;
+    void write(OfSet const &of, int output, SortedFace const &sorted,
+               LimitStencilPlace<REAL> const &place) const;
     int countVertexSize(LimitRow const &row) const;
-    void writeVertex(Index vert, Place const &place) const;
+    void writeVertex(Index vert, LimitStencilPlace<REAL> const &place) const;
 
     LatticeFaces const &_faces;
     bool const _hasDerivatives;

@@ -479,7 +479,7 @@ std::optional<LimitMask> solve(std::vector<Node> const &nodes, FaceMask faceMask
 }
 
 // The mask of a patch, from that of the patch which the step leads to.  There all lengths are half.
-LimitMask stepBack(PatchRefinement const &step, LimitMask const &cMask) {
+LimitMask stepMask(PatchRefinement const &step, LimitMask const &cMask) {
     LimitMask mask;
     step.ApplyLeft(cMask.weights, mask.weights);
     for (int cSide : step.sides) {
@@ -601,7 +601,7 @@ bool LimitMaskFinder::addCycle(std::vector<Node> nodes) {
 auto LimitMaskFinder::addStepsBefore(std::vector<Node> const &nodes, MaskPointer mask)
     -> MaskPointer {
     for (auto node = nodes.rbegin(); node != nodes.rend(); ++node) {
-        mask = std::make_shared<LimitMask const>(stepBack(node->step, *mask));
+        mask = std::make_shared<LimitMask const>(stepMask(node->step, *mask));
         _masks.insert_or_assign(node->patch.signature, mask);
     }
     return mask;

@@ -252,7 +252,8 @@ void LimitMultiplier<REAL>::sumTerms(Term const *begin, Term const *end, int num
 
 // The columns that a row has.
 template <typename REAL>
-void LimitMultiplier<REAL>::write(int row, Columns const &columns, Place const &place) const {
+void LimitMultiplier<REAL>::write(int row, Columns const &columns,
+                                  LimitStencilPlace<REAL> const &place) const {
     REAL const *const weights = _sums.data();
     REAL const *const du = weights + getStride(columns.size);
     REAL const *const dv = du + getStride(columns.size);
@@ -272,7 +273,7 @@ void LimitMultiplier<REAL>::write(int row, Columns const &columns, Place const &
 }
 
 template <typename REAL>
-void LimitMultiplier<REAL>::Fill(Columns const &columns, Place const *places) {
+void LimitMultiplier<REAL>::Fill(Columns const &columns, LimitStencilPlace<REAL> const *places) {
     numberColumns(columns.indices, columns.size);
     int const stride = getStride(columns.size);
     _sums.resize(kNumSums * std::size_t(stride));
@@ -289,7 +290,7 @@ void LimitMultiplier<REAL>::Fill(Columns const &columns, Place const *places) {
         RowTerms const terms = getRows()[std::size_t(row)];
         Term const *const begin = ofRows.data() + terms.begin;
         Term const *const end = ofRows.data() + terms.end;
-        Place const &place = places[row];
+        LimitStencilPlace<REAL> const &place = places[row];
         if (!place.indices) {
             continue;
         }

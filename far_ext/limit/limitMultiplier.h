@@ -64,10 +64,9 @@ public:
     /// Valid until the next call.
     Columns FindColumns();
 
-    using Place = LimitStencilPlace<REAL>;
     /// \brief Writes the stencils of all rows, whose \p columns are those that FindColumns() gave: an
     /// entry for each of them that a row has.  A row without a place is not wanted.
-    void Fill(Columns const &columns, Place const *places);
+    void Fill(Columns const &columns, LimitStencilPlace<REAL> const *places);
 
 private:
     // What an index has: its rows in the round that is set, and its column.
@@ -110,7 +109,7 @@ private:
     void scatterTerms(Term const *begin, Term const *end, int numColumns);
     template <int NUM_SUMS>
     void sumTerms(Term const *begin, Term const *end, int numColumns, REAL *const *sums) const;
-    void write(int row, Columns const &columns, Place const &place) const;
+    void write(int row, Columns const &columns, LimitStencilPlace<REAL> const &place) const;
 
     LevelStencils const *const _stencils;
     bool const _hasDerivatives;

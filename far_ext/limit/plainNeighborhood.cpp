@@ -17,8 +17,8 @@ constexpr int kEndOfBytes = 256;
 constexpr int kRegularValence = 3;
 constexpr int kRegularSize = HexIndexing::kNumEFaceCorners;
 
-// A face that has a vertex, and where.
-struct FaceCorner {
+// The vertices of a face, from one of them on.
+struct TurnedFace {
     Index const *verts;
     int size;
     int local;
@@ -29,7 +29,7 @@ struct FaceCorner {
     }
 };
 
-FaceCorner getFaceCorner(Level const &level, Index k) {
+TurnedFace getTurnedFace(Level const &level, Index k) {
     Index const face = level.vertFaces[k];
     return {level.faceVerts.data() + level.faceFirstCorner[face], level.GetFaceSize(face),
             level.vertFaceLocals[k]};
@@ -43,7 +43,7 @@ bool gatherHexagons(Level const &level, Index vert, Index *sources, IS_HEXAGON i
     Index const begin = level.vertFirstFace[vert];
     Index *next = sources + 1 + kRegularValence;
     sources[0] = vert;
-    auto const addFace = [&](FaceCorner const &corner, Index neighbor) {
+    auto const addFace = [&](TurnedFace const &corner, Index neighbor) {
         if (!isHexagon(corner, neighbor)) {
             return false;
         }
@@ -53,7 +53,7 @@ bool gatherHexagons(Level const &level, Index vert, Index *sources, IS_HEXAGON i
         return true;
     };
     for (int i = 0; i < kRegularValence; ++i) {
-        FaceCorner const corner = getFaceCorner(level, begin + i);
+        TurnedFace const corner = getTurnedFace(level, begin + i);
         sources[1 + i] = corner.GetVertex(1);
         if (!addFace(corner, sources[1 + i])) {
             return false;
@@ -69,7 +69,7 @@ bool gatherHexagons(Level const &level, Index vert, Index *sources, IS_HEXAGON i
         while (k < last && isAround(level.vertFaces[k])) {
             ++k;
         }
-        if (!addFace(getFaceCorner(level, k), sources[1 + i])) {
+        if (!addFace(getTurnedFace(level, k), sources[1 + i])) {
             return false;
         }
     }
@@ -157,7 +157,7 @@ bool PlainNeighborhoodGatherer::addFace(Index face, int local, PlainNeighborhood
     result.key.resize(keySize + 1 + std::size_t(size));
     char *key = result.key.data() + keySize;
     *key++ = char(size);
-    FaceCorner const corners = {_level.faceVerts.data() + first, size, local};
+    TurnedFace const corners = {_level.faceVerts.data() + first, size, local};
     for (int i = 0; i < size; ++i) {
         Index const vert = corners.GetVertex(i);
         auto const next = Index(result.sources.size());
@@ -223,7 +223,7 @@ bool PlainNeighborhoodGatherer::addFacesFrom(Index vert, int first, bool isKeyOf
     for (int i = 0; i < numFaces; ++i) {
         Index const k = firstFace + (first + i) % numFaces;
         Index const face = _level.vertFaces[k];
-        FaceCorner const corner = getFaceCorner(_level, k);
+        TurnedFace const corner = getTurnedFace(_level, k);
         if (std::find(_faces.begin(), _faces.end(), face) == _faces.end()) {
             if (!addFace(face, corner.local, result)) {
                 return false;
@@ -257,7 +257,7 @@ bool PlainNeighborhoodGatherer::Gather(Index vert, PlainNeighborhood &result) {
     int const first = findFirstFace(vert);
     auto const getRingFace = [&](int i) { return begin + (first + i) % numFaces; };
     for (int i = 0; i < numFaces; ++i) {
-        Index const neighbor = getFaceCorner(_level, getRingFace(i)).GetVertex(1);
+        Index const neighbor = getTurnedFace(_level, getRingFace(i)).GetVertex(1);
         auto const next = Index(result.sources.size());
         if (hasFeature(neighbor) || _numbers.FindOrSet(neighbor, next) != next) {
             return false;
@@ -310,7 +310,7 @@ bool PlainNeighborhoodGatherer::GatherFace(Index face, PlainNeighborhood &result
     auto const numRing = _faces.size();
     std::bitset<kEndOfBytes> isDone;
     for (std::size_t i = 0; i < numRing; ++i) {
-        FaceCorner const corners = {_level.faceVerts.data() + _level.faceFirstCorner[_faces[i]],
+        TurnedFace const corners = {_level.faceVerts.data() + _level.faceFirstCorner[_faces[i]],
                                     _level.GetFaceSize(_faces[i]), 0};
         for (int k = 0; k < corners.size; ++k) {
             // Beside a vertex of the face, but none itself.
@@ -335,7 +335,7 @@ bool PlainNeighborhoodGatherer::GatherFace(Index face, PlainNeighborhood &result
 
 void PlainNeighborhoodGatherer::GatherRegular(Level const &level, Index vert,
                                               Index sources[kNumRegular]) {
-    gatherHexagons(level, vert, sources, [](FaceCorner const &, Index) { return true; });
+    gatherHexagons(level, vert, sources, [](TurnedFace const &, Index) { return true; });
 }
 
 bool PlainNeighborhoodGatherer::IsRegular(Index vert) const {
@@ -346,7 +346,7 @@ bool PlainNeighborhoodGatherer::IsRegular(Index vert) const {
     // The neighbours are plain before the faces around them are looked for.
     Index sources[kNumRegular];
     if (!isPlain(vert) ||
-        !gatherHexagons(_level, vert, sources, [&](FaceCorner const &corner, Index neighbor) {
+        !gatherHexagons(_level, vert, sources, [&](TurnedFace const &corner, Index neighbor) {
             return corner.size == kRegularSize && isPlain(neighbor);
         })) {
         return false;

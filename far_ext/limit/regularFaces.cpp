@@ -45,23 +45,11 @@ Marks markRegular(Level const &level, Level const *parent, Marks const &pMarks,
     return marks;
 }
 
-// An edge of a face as the face across has it.
-struct OtherSide {
-    OtherSide(Level const &level, Index ofFace, Index corner) {
-        Index const edge = level.faceEdges[corner];
-        int const side = level.edgeFaces[edge][0] == ofFace ? 1 : 0;
-        face = level.edgeFaces[edge][side];
-        first = level.faceFirstCorner[face];
-        local = level.edgeFaceLocals[edge][side];
-    }
-
-    // The corner some places further around the face, a hexagon.
-    Index GetCorner(int places) const { return first + (local + places) % kSize; }
-
-    Index face;
-    Index first;
-    int local;
-};
+// The corner some places further around a hexagon.
+Index getCornerBehind(Level const &level, FaceCorner const &at, int places) {
+    Index const first = level.faceFirstCorner[at.face];
+    return first + (at.corner - first + places) % kSize;
+}
 
 RegularFace gather(Level const &level, Index face, unsigned corners) {
     RegularFace result;
@@ -69,13 +57,14 @@ RegularFace gather(Level const &level, Index face, unsigned corners) {
     result.corners = corners;
     for (int i = 0; i < kSize; ++i) {
         // It runs the edge back: from vertex i + 1 of the face to vertex i, to the neighbour of that.
-        OtherSide const across(level, face, result.firstCorner + i);
+        FaceCorner const across = level.GetCornerAcross(result.firstCorner + i);
         int const next = (i + 1) % kSize;
-        result.neighbors[i] = level.faceVerts[across.GetCorner(2)];
-        result.next[i] = level.faceVerts[across.GetCorner(3)];
-        result.previous[next] = level.faceVerts[across.GetCorner(4)];
-        result.beyond[i] =
-            result.HasCorner(i) ? OtherSide(level, across.face, across.GetCorner(2)).face : face;
+        result.neighbors[i] = level.faceVerts[getCornerBehind(level, across, 2)];
+        result.next[i] = level.faceVerts[getCornerBehind(level, across, 3)];
+        result.previous[next] = level.faceVerts[getCornerBehind(level, across, 4)];
+        result.beyond[i] = result.HasCorner(i)
+                               ? level.GetCornerAcross(getCornerBehind(level, across, 2)).face
+                               : face;
     }
     return result;
 }

@@ -15,8 +15,8 @@ void addToRow(SteppedRow &row, Index vert, LimitWeights const &weights, double f
 }
 
 // The row in terms of the vertices of the parent.
-SteppedRow stepBack(SteppedRow const &cRow, Refinement const &refinement,
-                    RefinementRules const &rules) {
+SteppedRow stepRow(SteppedRow const &cRow, Refinement const &refinement,
+                   RefinementRules const &rules) {
     SteppedRow row;
     for (auto const &ofVertex : cRow) {
         ForEachParentWeight(refinement, rules, ofVertex.first, [&](Index pVert, double weight) {
@@ -38,7 +38,7 @@ SteppedRow StepRowBack(MeshLevels const &mesh, HexSchemeOptions const &schemeOpt
     for (int child = cLevel; child > level; --child) {
         std::shared_ptr<RefinementRules const> const rules =
             GetRules(mesh.levels[std::size_t(child) - 1], schemeOptions, Interpolation::Vertex);
-        row = stepBack(row, mesh.refinements[std::size_t(child) - 1], *rules);
+        row = stepRow(row, mesh.refinements[std::size_t(child) - 1], *rules);
     }
     return row;
 }

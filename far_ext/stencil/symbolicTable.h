@@ -37,15 +37,15 @@ public:
     std::vector<int> TakeSizes() { return std::move(_sizes); }
 
 private:
-    struct Sources {
+    struct SourceNumbers {
         std::vector<Index> ofVertices;
         Index number = 0;
     };
     int getSourceNumber(int level) const { return _plan.factorize ? 0 : level - _plan.firstBuilt; }
 
     StencilPlan const &_plan;
-    std::deque<RefinementRows> _rows; // plan.firstBuilt ... plan.lastLevel
-    std::vector<Sources> _sources;    // one, or as many as refinements
+    std::deque<RefinementRows> _rows;    // plan.firstBuilt ... plan.lastLevel
+    std::vector<SourceNumbers> _sources; // one, or as many as refinements
     std::deque<RowSupports> _sourceSupports;
     std::deque<RowSupports> _supports; // as many as refinements
     std::vector<int> _sizes;

@@ -22,7 +22,7 @@ public:
 protected:
     using Index = Far::Index;
     /// Where the next face goes, and its next corner.
-    struct Place {
+    struct NextFace {
         Index face;
         Index corner;
     };
@@ -47,9 +47,11 @@ protected:
     }
     ~FaceWriter() = default;
 
-    void beginFace(Place &place) { _c.faceFirstCorner[std::size_t(place.face++)] = place.corner; }
+    void beginFace(NextFace &place) {
+        _c.faceFirstCorner[std::size_t(place.face++)] = place.corner;
+    }
     /// Adds a vertex to the face begun last, and the edge from there to the next one.
-    void addCorner(Place &place, Index vert, EdgeSide edge) {
+    void addCorner(NextFace &place, Index vert, EdgeSide edge) {
         if constexpr (FULL) {
             _edges[std::size_t(edge.edge)].corners[edge.side] = place.corner;
         }

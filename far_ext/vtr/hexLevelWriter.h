@@ -46,7 +46,7 @@ private:
         bool isBoundary;
     };
     /// A corner with its neighbours in the face and the edges that end and start there.
-    struct FaceCorner {
+    struct CornerEdges {
         Index prev;
         Index corner;
         Index next;
@@ -93,7 +93,7 @@ private:
         bool const isSideA = _p.edgeFaces[pEdge][0] == pFace;
         return {eFace, isSideA ? &kEFaceSideA : &kEFaceSideB, false};
     }
-    FaceCorner cornerOf(Index pFace, LocalIndex local) const {
+    CornerEdges cornerOf(Index pFace, LocalIndex local) const {
         Index const first = _p.faceFirstCorner[pFace];
         Index const last = _p.faceFirstCorner[pFace + 1] - 1;
         Index const corner = first + local;

@@ -29,7 +29,7 @@ void HexLevelWriter::listOpenVertices() {
         Index numFaces = 0;
         Index numEdges = end - begin;
         for (Index i = begin; i < end; ++i) {
-            FaceCorner const corner = cornerOf(_p.vertFaces[i], _p.vertFaceLocals[i]);
+            CornerEdges const corner = cornerOf(_p.vertFaces[i], _p.vertFaceLocals[i]);
             bool const startsFan = corner.outEdge.isBoundary && corner.outEdge.HasEFace();
             bool const endsFan = corner.inEdge.isBoundary && corner.inEdge.HasEFace();
             numFaces += Index(corner.inEdge.HasEFace()) + Index(startsFan);
@@ -52,7 +52,7 @@ void HexLevelWriter::fillBoundaryEFace(Index pEdge, Index numBoundaryBefore) {
     Index const numBBefore = _indexing.GetEdgeChildFace(pEdge, 0) - cFace;
     Index const cFirst =
         _indexing.GetEdgeChildFirstCorner(pEdge, numBBefore, numBoundaryBefore - numBBefore);
-    FaceCorner const corner = cornerOf(_p.edgeFaces[pEdge][0], _p.edgeFaceLocals[pEdge][0]);
+    CornerEdges const corner = cornerOf(_p.edgeFaces[pEdge][0], _p.edgeFaceLocals[pEdge][0]);
     _c.faceFirstCorner[cFace] = cFirst;
     Index *const verts = _c.faceVerts.data() + cFirst;
     verts[side.startVertex] = _indexing.GetVertexChildVertex(_p.edgeVerts[pEdge][0]);
@@ -82,7 +82,7 @@ void HexLevelWriter::fillOpenFace(Index pFace) {
     VertexOffsets vertex = fVertexOffsets(first, numHalfFacesBefore(pFace));
     for (Index i = 0; i < size; ++i) {
         LocalIndex const local = LocalIndex(i);
-        FaceCorner const corner = cornerOf(pFace, local);
+        CornerEdges const corner = cornerOf(pFace, local);
         FaceEdge const &in = corner.inEdge;
         FaceEdge const &out = corner.outEdge;
         Index const vVertex = _indexing.GetVertexChildVertex(_p.faceVerts[corner.corner]);
@@ -136,7 +136,7 @@ void HexLevelWriter::fillOpenVertex(Index pVert, Index numOpenBefore) {
         return _c.faceEdges[_c.faceFirstCorner[eFace] + kBoundaryEFaceEdge];
     };
     for (Index i = _p.vertFirstFace[pVert]; i < _p.vertFirstFace[pVert + 1]; ++i) {
-        FaceCorner const corner = cornerOf(_p.vertFaces[i], _p.vertFaceLocals[i]);
+        CornerEdges const corner = cornerOf(_p.vertFaces[i], _p.vertFaceLocals[i]);
         FaceEdge const &in = corner.inEdge;
         FaceEdge const &out = corner.outEdge;
         if (out.isBoundary && out.HasEFace()) {

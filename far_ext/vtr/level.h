@@ -110,6 +110,12 @@ inline constexpr std::array<Far::LocalIndex, 3> kFVertexEdgeLocals = {0, 1, 1};
 /// In Level::faceHoles, a face all of which lies in holes.
 inline constexpr unsigned char kHole = 3;
 
+/// \brief A corner, and the face that has it.
+struct FaceCorner {
+    Far::Index face;
+    Far::Index corner;
+};
+
 /// Two of something, for the two ends or sides of an edge.
 using IndexPair = std::array<Far::Index, 2>;
 using LocalIndexPair = std::array<Far::LocalIndex, 2>;
@@ -176,6 +182,13 @@ struct Level {
     Index GetSideCorner(Index e, int side) const {
         Index const face = edgeFaces[e][side];
         return face < 0 ? face : faceFirstCorner[face] + edgeFaceLocals[e][side];
+    }
+
+    /// Of the edge that begins at a corner, and is no boundary, the other side: where that begins.
+    FaceCorner GetCornerAcross(Index corner) const {
+        Index const edge = faceEdges[corner];
+        int const side = GetSideCorner(edge, 0) == corner ? 1 : 0;
+        return {edgeFaces[edge][side], GetSideCorner(edge, side)};
     }
 
     /// The place of a vertex, 0 or 1, in each of its edges.

@@ -315,7 +315,7 @@ public:
 private:
     using Writer = FaceWriter<FULL>;
     using typename Writer::EdgeSide;
-    using typename Writer::Place;
+    using typename Writer::NextFace;
     using typename Writer::Side;
     using Writer::_c;
     using Writer::_edges;
@@ -347,9 +347,9 @@ private:
 
     void fillFFaces();
     void fillEFaces();
-    void fillEFace(Index pEdge, Place &place);
+    void fillEFace(Index pEdge, NextFace &place);
     void fillVFaces();
-    void fillVFace(Index pVert, VFace const &vFace, Place &place);
+    void fillVFace(Index pVert, VFace const &vFace, NextFace &place);
     void finishEdges();
 
     PolygonRefiner const &_refiner;
@@ -358,7 +358,7 @@ private:
 template <bool FULL>
 void PolygonRefiner::Builder<FULL>::fillFFaces() {
     ParallelForRange(_p.numFaces, [this](Index begin, Index end) {
-        Place place = {begin, _p.faceFirstCorner[begin]};
+        NextFace place = {begin, _p.faceFirstCorner[begin]};
         for (Index pFace = begin; pFace < end; ++pFace) {
             beginFace(place);
             while (place.corner < _p.faceFirstCorner[pFace + 1]) {
@@ -372,7 +372,7 @@ template <bool FULL>
 void PolygonRefiner::Builder<FULL>::fillEFaces() {
     ParallelForRange(_p.numEdges, [this](Index begin, Index end) {
         ChildCounts const &before = _refiner._edgeCounts[std::size_t(begin / kParallelRange)];
-        Place place = {_p.numFaces + Index(before.faces), _p.numCorners + Index(before.corners)};
+        NextFace place = {_p.numFaces + Index(before.faces), _p.numCorners + Index(before.corners)};
         for (Index pEdge = begin; pEdge < end; ++pEdge) {
             if (_refiner.makesEFace(pEdge)) {
                 fillEFace(pEdge, place);
@@ -382,7 +382,7 @@ void PolygonRefiner::Builder<FULL>::fillEFaces() {
 }
 
 template <bool FULL>
-void PolygonRefiner::Builder<FULL>::fillEFace(Index pEdge, Place &place) {
+void PolygonRefiner::Builder<FULL>::fillEFace(Index pEdge, NextFace &place) {
     std::size_t const end0 = getFirstEnd(pEdge);
     Index const vVertex0 = vVertex(_p.edgeVerts[pEdge][0]);
     Index const vVertex1 = vVertex(_p.edgeVerts[pEdge][1]);
@@ -417,8 +417,9 @@ template <bool FULL>
 void PolygonRefiner::Builder<FULL>::fillVFaces() {
     ParallelForRange(_p.numVertices, [this](Index begin, Index end) {
         ChildCounts const &before = _refiner._vertexCounts[std::size_t(begin / kParallelRange)];
-        Place place = {_c.numFaces - _c.numVFaces + Index(before.faces),
-                       _p.numCorners + Index(_refiner._edgeCounts.back().corners + before.corners)};
+        NextFace place = {_c.numFaces - _c.numVFaces + Index(before.faces),
+                          _p.numCorners +
+                              Index(_refiner._edgeCounts.back().corners + before.corners)};
         for (Index pVert = begin; pVert < end; ++pVert) {
             _refiner.forEachVFace(
                 pVert, vVertex(pVert) != Far::INDEX_INVALID,
@@ -429,7 +430,7 @@ void PolygonRefiner::Builder<FULL>::fillVFaces() {
 }
 
 template <bool FULL>
-void PolygonRefiner::Builder<FULL>::fillVFace(Index pVert, VFace const &vFace, Place &place) {
+void PolygonRefiner::Builder<FULL>::fillVFace(Index pVert, VFace const &vFace, NextFace &place) {
     auto const cornerAt = [&](Index i) { return _p.GetVertexCorner(vFace.GetPosition(i)); };
     // The edge across that between a face and the one before it.
     auto const edgeTo = [&](Index i) -> EdgeSide {

@@ -10,17 +10,17 @@ namespace OpenSubdivHex::FarExt::internal {
 
 /// \brief Takes the run [begin, end) of components apart at those that are listed, ascending.
 ///
-/// Calls regular(begin, end, n) for the runs between them, which are not empty, and
+/// Calls between(begin, end, n) for the runs between them, which are not empty, and
 /// listed(index, n) for those themselves, in order; n of all listed components come before.
-template <typename LIST, typename REGULAR, typename LISTED>
-void ForEachRun(Far::Index begin, Far::Index end, LIST const &list, REGULAR regular,
+template <typename LIST, typename BETWEEN, typename LISTED>
+void ForEachRun(Far::Index begin, Far::Index end, LIST const &list, BETWEEN between,
                 LISTED listed) {
     auto next = std::lower_bound(list.begin(), list.end(), begin);
     while (begin < end) {
         auto const numBefore = Far::Index(next - list.begin());
         Far::Index const runEnd = next == list.end() ? end : std::min(*next, end);
         if (begin < runEnd) {
-            regular(begin, runEnd, numBefore);
+            between(begin, runEnd, numBefore);
         }
         if (runEnd < end) {
             listed(runEnd, numBefore);

@@ -16,18 +16,6 @@ bool isBorder(Level const &level, Index edge) {
     return level.IsBoundary(edge) || Crease::IsSharp(level.GetEdgeSharpness(edge));
 }
 
-struct FaceCorner {
-    Index face;
-    Index corner;
-};
-
-// Where the other face of an interior edge begins to run along it.
-FaceCorner getOtherSide(Level const &level, Index corner) {
-    Index const edge = level.faceEdges[corner];
-    int const side = level.GetSideCorner(edge, 0) == corner ? 1 : 0;
-    return {level.edgeFaces[edge][side], level.GetSideCorner(edge, side)};
-}
-
 // How much of the sharp rule an edge has.
 double getSharpShare(Level const &level, Index edge) {
     return level.IsBoundary(edge) ? 1 : std::min(1.0f, level.GetEdgeSharpness(edge));
@@ -85,7 +73,7 @@ int TruncationMask::countSector(Index corner) const {
         isBorderBefore = isBorderAt(in);
         next = _parent.IsBoundary(_parent.faceEdges[in])
                    ? FaceCorner{Far::INDEX_INVALID, Far::INDEX_INVALID}
-                   : getOtherSide(_parent, in);
+                   : _parent.GetCornerAcross(in);
     } while (!isBorderBefore && next.corner != corner);
     if (next.corner == corner) {
         return count;
@@ -93,7 +81,7 @@ int TruncationMask::countSector(Index corner) const {
     Index out = corner;
     do {
         ++count;
-        FaceCorner const at = getOtherSide(_parent, out);
+        FaceCorner const at = _parent.GetCornerAcross(out);
         out = _parent.GetNextCorner(at.face, at.corner);
     } while (!isBorderAt(out));
     bool const isDart = out == next.corner;
@@ -104,7 +92,7 @@ int TruncationMask::countSector(Index corner) const {
 // corner of it; each source once where all faces are triangles.
 void TruncationMask::addCentroids(Index vert, Index corner, TruncateMask const &mask,
                                   Sources &sources) const {
-    FaceCorner const across = getOtherSide(_parent, corner);
+    FaceCorner const across = _parent.GetCornerAcross(corner);
     Index const beside[] = {corner, _parent.GetNextCorner(across.face, across.corner)};
     Index const first = _parent.vertFirstFace[vert];
     int const numFaces = _parent.GetNumVertexFaces(vert);
@@ -119,7 +107,7 @@ void TruncationMask::addCentroids(Index vert, Index corner, TruncateMask const &
         FaceCorner const at = {_parent.vertFaces[k], _parent.GetVertexCorner(k)};
         double const weight = getWeight(at);
         own += weight;
-        FaceCorner next = getOtherSide(_parent, at.corner);
+        FaceCorner next = _parent.GetCornerAcross(at.corner);
         next.corner = _parent.GetNextCorner(next.face, next.corner);
         Index const end = _parent.GetPrevCorner(at.face, at.corner);
         Index source = _parent.GetNextCorner(at.face, at.corner);

@@ -211,7 +211,7 @@ public:
 private:
     using Writer = FaceWriter<FULL>;
     using typename Writer::EdgeSide;
-    using typename Writer::Place;
+    using typename Writer::NextFace;
     using typename Writer::Side;
     using Writer::_c;
     using Writer::_edges;
@@ -245,7 +245,7 @@ private:
     }
     void fillFFaces() {
         ParallelForRange(_p.numFaces, [this](Index begin, Index end) {
-            Place place = {begin, 2 * _p.faceFirstCorner[begin]};
+            NextFace place = {begin, 2 * _p.faceFirstCorner[begin]};
             for (Index pFace = begin; pFace < end; ++pFace) {
                 beginFace(place);
                 Index corner = _p.faceFirstCorner[pFace];
@@ -263,15 +263,15 @@ private:
     void fillVFaces() {
         ParallelForRange(_p.numVertices, [this](Index begin, Index end) {
             ChildCounts const &before = _refiner._vertexCounts[std::size_t(begin / kParallelRange)];
-            Place place = {_p.numFaces + Index(before.faces),
-                           2 * _p.numCorners + Index(before.corners)};
+            NextFace place = {_p.numFaces + Index(before.faces),
+                              2 * _p.numCorners + Index(before.corners)};
             for (Index pVert = begin; pVert < end; ++pVert) {
                 _refiner.forEachVFace(pVert,
                                       [&](VFace const &vFace) { fillVFace(pVert, vFace, place); });
             }
         });
     }
-    void fillVFace(Index pVert, VFace const &vFace, Place &place) {
+    void fillVFace(Index pVert, VFace const &vFace, NextFace &place) {
         auto const cornerAt = [&](Index i) { return _p.GetVertexCorner(vFace.GetPosition(i)); };
         Index const first = cornerAt(0);
         beginFace(place);

@@ -103,7 +103,7 @@ void addOrbits(int first, int numOrbits, int faceSize, std::vector<int> &entries
 
 void LatticeLimit::Prepare(LatticeFaces const &faces) {
     for (LatticeFaces::Set const &of : faces.GetSets()) {
-        Sources const sources = findSources(of);
+        UsedOrbits const sources = findSources(of);
         Corners const corners = makeCorners(faces, of, sources);
         for (auto const &[halves, some] : GroupByHalves(of)) {
             Set &set = _sets.emplace_back();
@@ -118,7 +118,7 @@ void LatticeLimit::Prepare(LatticeFaces const &faces) {
     std::sort(_madeCorners.begin(), _madeCorners.end());
 }
 
-LatticeLimit::Sources LatticeLimit::findSources(LatticeFaces::Set const &of) {
+LatticeLimit::UsedOrbits LatticeLimit::findSources(LatticeFaces::Set const &of) {
     if (std::optional<SourceOrbits> const compact = FindCompactSourceOrbits(of)) {
         return {true, *compact};
     }
@@ -127,7 +127,7 @@ LatticeLimit::Sources LatticeLimit::findSources(LatticeFaces::Set const &of) {
 
 LatticeLimit::Corners LatticeLimit::makeCorners(LatticeFaces const &faces,
                                                 LatticeFaces::Set const &of,
-                                                Sources const &sources) {
+                                                UsedOrbits const &sources) {
     Corners corners;
     auto const faceSize = std::size_t(of.patch.GetFaceSize());
     // Of triangles one corner in six is made.
@@ -148,7 +148,7 @@ LatticeLimit::Corners LatticeLimit::makeCorners(LatticeFaces const &faces,
     return corners;
 }
 
-void LatticeLimit::setSources(LatticeFaces::Set const &of, Sources const &sources,
+void LatticeLimit::setSources(LatticeFaces::Set const &of, UsedOrbits const &sources,
                               std::vector<Index> const &faces, Set &set) {
     set.isCompact = sources.areCompact;
     std::vector<int> places;
@@ -165,7 +165,7 @@ void LatticeLimit::setSources(LatticeFaces::Set const &of, Sources const &source
     });
 }
 
-void LatticeLimit::setOutputs(LatticeFaces::Set const &of, Sources const &sources,
+void LatticeLimit::setOutputs(LatticeFaces::Set const &of, UsedOrbits const &sources,
                               Corners const &corners, std::vector<Index> const &faces,
                               std::vector<int> const &halves, Set &set) {
     int const numPairs = CountPairs(of);

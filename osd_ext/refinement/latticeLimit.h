@@ -49,23 +49,23 @@ private:
     };
 
     /// Which sources of a face are summed up.
-    struct Sources {
+    struct UsedOrbits {
         bool areCompact;
         SourceOrbits orbits;
     };
     /// The vertices at the corners of faces, one by one; invalid where other faces make them.
     using Corners = std::vector<Far::Index>;
 
-    static Sources findSources(FarExt::internal::LatticeFaces::Set const &of);
+    static UsedOrbits findSources(FarExt::internal::LatticeFaces::Set const &of);
     /// Finds which corners are made, and keeps them; none where this takes more time than sums do.
     Corners makeCorners(FarExt::internal::LatticeFaces const &faces,
-                        FarExt::internal::LatticeFaces::Set const &of, Sources const &sources);
+                        FarExt::internal::LatticeFaces::Set const &of, UsedOrbits const &sources);
     /// @name The parts of a set, of some faces
     /// @{
-    static void setSources(FarExt::internal::LatticeFaces::Set const &of, Sources const &sources,
+    static void setSources(FarExt::internal::LatticeFaces::Set const &of, UsedOrbits const &sources,
                            std::vector<Far::Index> const &faces, Set &set);
     /// \param halves  the pairs of which these faces make one half
-    static void setOutputs(FarExt::internal::LatticeFaces::Set const &of, Sources const &sources,
+    static void setOutputs(FarExt::internal::LatticeFaces::Set const &of, UsedOrbits const &sources,
                            Corners const &corners, std::vector<Far::Index> const &faces,
                            std::vector<int> const &halves, Set &set);
     /// Behind these: what memory is asked for ahead.

@@ -140,33 +140,6 @@ void PreparedLimit::prepareVertices(LimitOrigins const &origins, LevelLimit &res
         kRange);
 }
 
-std::vector<unsigned char> PreparedLimit::FindSources(Index numVertices) const {
-    LevelLimit const &last = _levels.back();
-    if (!IsNeeded(last.level->depth)) {
-        return {};
-    }
-    std::vector<unsigned char> isSource(std::size_t(numVertices), 0);
-    auto const markPlace = [&](std::uint32_t place) {
-        isSource[place / RegularFaceGroup::kPointStride] = 1;
-    };
-    auto const markPlaces = [&](RegularFaceGroup::Places const &places) {
-        for (auto const &ofCorner : places) {
-            std::for_each(std::begin(ofCorner), std::end(ofCorner), markPlace);
-        }
-    };
-    for (FaceSet const &set : last.sets) {
-        for (RegularFaceGroup const &group : set.groups) {
-            markPlaces(group.verts);
-            markPlaces(group.neighbors);
-            markPlaces(group.next);
-            markPlaces(group.previous);
-            std::for_each(std::begin(group.others), std::end(group.others), markPlaces);
-        }
-    }
-    std::for_each(last.places.begin(), last.places.end(), markPlace);
-    return isSource;
-}
-
 int PreparedLimit::GetLastLevel() const {
     int level = int(_levels.size()) - 1;
     while (level > 0 && !IsNeeded(level)) {

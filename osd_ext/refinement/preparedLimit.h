@@ -38,7 +38,7 @@ public:
     /// \brief Writes the outputs of those vertices whose limit follows from \p level, and of others that
     /// are in faces of the level: later levels must come behind.
     ///
-    /// \param values        of \p level; of the last level those will do that FindSources() marks
+    /// \param values        of \p level
     /// \param isReadBehind  whether one float may be read behind the last of them
     void Evaluate(int level, Elements<float const> values, bool isReadBehind, int length,
                   Outputs const &outputs) const;
@@ -56,10 +56,6 @@ public:
     }
     /// The last level that is needed.
     int GetLastLevel() const;
-
-    /// A mark for each of the \p numVertices vertices of the last level, whether outputs depend on
-    /// it; empty if none do.
-    std::vector<unsigned char> FindSources(Far::Index numVertices) const;
 
 private:
     /// Faces of a level that have a mask in common.

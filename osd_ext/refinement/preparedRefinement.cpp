@@ -242,7 +242,7 @@ void makeFaces(RefinementRules const &rules, Level const &parent,
     std::vector<Group> groupOfWeighted;
     FaceWeightLister weights(rules, prepared.faceWeights);
     FaceRunMaker runs(parent);
-    for (TileMap::FaceRun const &run : tileMap.GetFaceRuns()) {
+    for (TileMap::Run const &run : tileMap.GetFaceRuns()) {
         Group const group = groupOfTile[run.tile];
         ForEachRun(
             run.begin, run.end, indices,
@@ -299,7 +299,7 @@ public:
         }
     }
     // The F-vertices that an earlier refinement made of the faces of its parent.
-    void AddFVertices(Refinement const &earlier, std::vector<TileMap::FaceRun> const &runs) {
+    void AddFVertices(Refinement const &earlier, std::vector<TileMap::Run> const &runs) {
         Level const &level = *earlier.parent;
         bool const areNew = &level == _levelOfNewVertices;
         bool const areOlder = &level == _levelOfOlderVertices;
@@ -308,37 +308,37 @@ public:
             add(earlier.GetCornerChildVertex(corners[begin]),
                 earlier.GetCornerChildVertex(corners[end]), group);
         };
-        std::vector<Index> irregular = findFacesOfWeighted(earlier);
+        std::vector<Index> exceptions = findFacesOfWeighted(earlier);
         if (areNew) {
             for (Index const edge : level.boundaryEdges) {
-                irregular.push_back(level.edgeFaces[std::size_t(edge)][0]);
+                exceptions.push_back(level.edgeFaces[std::size_t(edge)][0]);
             }
         }
-        SortUnique(irregular);
-        FaceRunMaker regular(level);
-        for (TileMap::FaceRun const &run : runs) {
+        SortUnique(exceptions);
+        FaceRunMaker others(level);
+        for (TileMap::Run const &run : runs) {
             Group const group = groupOf(run.tile);
             if (!areNew && !areOlder) {
                 addFVertices(run.begin, run.end, group);
                 continue;
             }
             ForEachRun(
-                run.begin, run.end, irregular,
+                run.begin, run.end, exceptions,
                 [&](Index begin, Index end, Index) {
                     addToGroups(begin, end, run.size, group,
                                 [&](Index first, Index last, Group groupOfPart) {
-                                    regular.Add(first, last, run.size, groupOfPart);
+                                    others.Add(first, last, run.size, groupOfPart);
                                 });
                 },
                 [&](Index face, Index) { addFVertices(face, face + 1, group); });
         }
         if (areNew) {
-            _newVertexFaces = std::move(regular);
+            _newVertexFaces = std::move(others);
             if (!_levelOfOlderVertices) {
                 listStartCorners(earlier);
             }
         } else if (areOlder) {
-            _olderVertexFaces = std::move(regular);
+            _olderVertexFaces = std::move(others);
         }
     }
     void End() {
@@ -555,7 +555,7 @@ void PrepareRefinement(std::shared_ptr<RefinementRules const> const &rules,
 
     VertexGrouper vertices(*rules, refinement, groupOfTile, prepared);
     vertices.AddFirstVertices(tileMap.GetFirstVertexRuns());
-    std::vector<std::vector<TileMap::FaceRun>> const &fVertexRuns = tileMap.GetFVertexRuns();
+    std::vector<std::vector<TileMap::Run>> const &fVertexRuns = tileMap.GetFVertexRuns();
     for (std::size_t i = 0; i < fVertexRuns.size(); ++i) {
         vertices.AddFVertices(*refinements[numBefore - fVertexRuns.size() + i], fVertexRuns[i]);
     }

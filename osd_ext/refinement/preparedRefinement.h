@@ -99,26 +99,6 @@ struct VertexRun {
     std::size_t firstCorner;
 };
 
-/// \brief What a refinement does, in groups that are done side by side: those of tiles, and behind
-/// them those of vertices between tiles.
-///
-/// Of the parent, faces by tile.  The faces of a run are of one size, and all F-faces or none.
-/// Vertices that are F-vertices of all corners of a face of the level before it, and of the level
-/// before that one, come in runs of such faces.
-struct RefinementGroups {
-    Groups<IndexRun> faceRuns; ///< plain faces and hexagons with dense rules
-    Groups<WeightedFace> weightedFaces;
-
-    /// Of a truncation, all vertices that it makes, in tiles of some each.
-    Groups<ListedVertex> listedVertices;
-
-    Groups<IndexRun> newVertexFaces;
-    Groups<IndexRun> olderVertexFaces;
-    /// The other vertices of the parent.
-    Groups<VertexRun> vertexRuns;
-    Groups<WeightedVertex> weightedVertices;
-};
-
 /// \brief A refinement prepared for evaluation: all that making the points of its child takes.
 /// Refers to the parent level and to the two levels before it.
 ///
@@ -133,9 +113,25 @@ struct RefinementGroups {
 /// and for all other vertices the corners around them.  The last vertex of the level is never
 /// plain, nor are its faces of 3 to 6 sides and the vertex whose F-vertex is the last: what plain
 /// faces and vertices read may be read in packets that reach into the element behind.
-struct PreparedRefinement : RefinementGroups {
+///
+/// Groups are done side by side: those of tiles, and behind them those of vertices between tiles.
+struct PreparedRefinement {
     std::shared_ptr<FarExt::internal::RefinementRules const> rules; ///< null for a truncation
     PlainMasks masks;
+    /// Of the parent, plain faces and hexagons with dense rules, in runs of one size; all of one are F-faces or
+    /// none is.
+    Groups<IndexRun> faceRuns;
+    Groups<WeightedFace> weightedFaces;
+    /// Of a truncation, all vertices that it makes, in tiles of some each.
+    Groups<ListedVertex> listedVertices;
+    /// The faces of the level before the parent whose F-vertices, of all corners, are vertices of the parent,
+    /// and those of the level before that one.
+    Groups<IndexRun> newVertexFaces;
+    Groups<IndexRun> olderVertexFaces;
+    /// The other vertices of the parent.
+    Groups<VertexRun> vertexRuns;
+    Groups<WeightedVertex> weightedVertices;
+
     Far::Index numVVertices = 0; ///< F-vertices follow in the child
     FarExt::internal::Level const *parent = nullptr;
     /// The level before the parent, and the one before that; null where they are not there.

@@ -470,7 +470,7 @@ void runKernel(RefinementTask const &task, int length, Groups<ITEM> const &group
 }
 
 void refineVertices(RefinementTask const &task, int length, int group) {
-    RefinementGroups const &groups = *task.groups;
+    PreparedRefinement const &groups = *task.refinement;
     runKernel<NewVertexKernel>(task, length, groups.newVertexFaces, group);
     runKernel<OlderVertexKernel>(task, length, groups.olderVertexFaces, group);
     runKernel<VertexKernel>(task, length, groups.vertexRuns, group);
@@ -494,9 +494,9 @@ void RefineElements(std::vector<RefinementTask> const &tasks, int length) {
     for (RefinementTask const &task : tasks) {
         PreparedRefinement const &refinement = *task.refinement;
         forEachGroup(0, refinement.numTiles, [&](int tile) {
-            runKernel<ListedVertexKernel>(task, length, task.groups->listedVertices, tile);
-            runKernel<FaceKernel>(task, length, task.groups->faceRuns, tile);
-            runKernel<FaceKernel>(task, length, task.groups->weightedFaces, tile);
+            runKernel<ListedVertexKernel>(task, length, refinement.listedVertices, tile);
+            runKernel<FaceKernel>(task, length, refinement.faceRuns, tile);
+            runKernel<FaceKernel>(task, length, refinement.weightedFaces, tile);
             refineVertices(task, length, tile);
         });
         // Their F-vertices are in several tiles, which are done by now.

@@ -26,11 +26,9 @@ struct RefinementTask {
     PreparedRefinement const *refinement;
     Elements<float const> src;
     Elements<float> dst;
-    RefinementGroups const *groups = refinement; ///< all, or some of them
 };
 
-/// \brief Does \p tasks, one after the other: writes all vertices of the levels that they make,
-/// or those of their groups.
+/// \brief Does \p tasks, one after the other: writes all vertices of the levels that they make.
 ///
 /// The order of the arithmetic depends on the topology alone: the result has the same bits for any
 /// number of threads, length, stride and place.

@@ -20,14 +20,10 @@ namespace {
 /// The least faces of a tile, on the average, in the level that several tiles are made of.
 constexpr int kMinTileFaces = 64;
 
-bool areAlike(TileMap::Run const &a, TileMap::Run const &b) { return a.tile == b.tile; }
-bool areAlike(TileMap::FaceRun const &a, TileMap::FaceRun const &b) {
-    return a.tile == b.tile && a.size == b.size;
-}
-
-template <class RUN>
-void append(std::vector<RUN> &runs, RUN const &run) {
-    AppendRun(runs, run, [](RUN const &a, RUN const &b) { return areAlike(a, b); });
+void append(std::vector<TileMap::Run> &runs, TileMap::Run const &run) {
+    AppendRun(runs, run, [](TileMap::Run const &a, TileMap::Run const &b) {
+        return a.tile == b.tile && a.size == b.size;
+    });
 }
 
 // The runs of count components.
@@ -92,7 +88,7 @@ void TileMap::makeRuns(Level const &level, std::vector<Tile> const &tilesOfFaces
 
 auto TileMap::getTilesOfFaces() const -> std::vector<Tile> {
     std::vector<Tile> tiles;
-    for (FaceRun const &run : _faceRuns) {
+    for (Run const &run : _faceRuns) {
         tiles.insert(tiles.end(), std::size_t(run.end - run.begin), run.tile);
     }
     return tiles;
@@ -100,7 +96,7 @@ auto TileMap::getTilesOfFaces() const -> std::vector<Tile> {
 
 auto TileMap::findTile(Index face) const -> Tile {
     auto const next = std::upper_bound(_faceRuns.begin(), _faceRuns.end(), face,
-                                       [](Index f, FaceRun const &run) { return f < run.begin; });
+                                       [](Index f, Run const &run) { return f < run.begin; });
     return std::prev(next)->tile;
 }
 
@@ -186,7 +182,7 @@ void TileMap::refineEdges(Refinement const &refinement) {
     std::vector<Run> const borderSpokes = refineBorders(refinement);
     HexIndexing const indexing = parent.ChildIndexing();
     std::vector<Run> cornerRuns;
-    for (FaceRun const &run : _faceRuns) {
+    for (Run const &run : _faceRuns) {
         if (run.begin < parent.numFaces) {
             Index const end = std::min(run.end, parent.numFaces);
             append(cornerRuns, {parent.faceFirstCorner[std::size_t(run.begin)],
@@ -288,10 +284,10 @@ auto TileMap::refineBorders(Refinement const &refinement) -> std::vector<Run> {
 
 // The runs of the faces, those with a border cut out, for kNoTile.  The faces around an F-vertex
 // come from a face and two of its edges, those around a V-vertex from the edges around its parent.
-auto TileMap::getInnerFaceRuns() const -> std::vector<FaceRun> {
-    std::vector<FaceRun> runs;
+auto TileMap::getInnerFaceRuns() const -> std::vector<Run> {
+    std::vector<Run> runs;
     auto border = _borders.begin();
-    for (FaceRun const &run : _faceRuns) {
+    for (Run const &run : _faceRuns) {
         Index begin = run.begin;
         for (; border != _borders.end() && border->face < run.end; ++border) {
             if (border->face >= begin) { // else the last one was of the same face

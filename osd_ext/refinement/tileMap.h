@@ -34,13 +34,7 @@ public:
         Index begin;
         Index end;
         Tile tile;
-    };
-    /// Faces [begin, end) in one tile and of one size.
-    struct FaceRun {
-        Index begin;
-        Index end;
-        Tile tile;
-        int size;
+        int size = 0; ///< of faces, all of which have it
     };
 
     /// Those of level 0, whose faces are taken for near in space when they are near in their order.
@@ -54,7 +48,7 @@ public:
     int GetNumTiles() const { return _faceOrder.empty() ? _numTiles : 1; }
 
     /// All faces of the level, ascending; tiles ascend in space.
-    std::vector<FaceRun> const &GetFaceRuns() const { return _faceRuns; }
+    std::vector<Run> const &GetFaceRuns() const { return _faceRuns; }
 
     /// @name The tile that a vertex lies inside
     /// kNoTile for some or all of the vertices whose faces are in several.  The first vertices of
@@ -63,7 +57,7 @@ public:
     std::vector<Run> const &GetFirstVertexRuns() const { return _firstVertexRuns; }
     /// All faces of the levels from which the other vertices come, the newest last: that many
     /// levels before this one.
-    std::vector<std::vector<FaceRun>> const &GetFVertexRuns() const { return _fVertexRuns; }
+    std::vector<std::vector<Run>> const &GetFVertexRuns() const { return _fVertexRuns; }
     /// @}
 
 private:
@@ -86,14 +80,14 @@ private:
     void findEdges(Level const &level);
     void refineEdges(Refinement const &refinement);
     std::vector<Run> refineBorders(Refinement const &refinement);
-    std::vector<FaceRun> getInnerFaceRuns() const;
+    std::vector<Run> getInnerFaceRuns() const;
     void addEFaces(Level const &parent);
 
     int _numTiles;
     std::vector<Index> _faceOrder; ///< until there are tiles
-    std::vector<FaceRun> _faceRuns;
+    std::vector<Run> _faceRuns;
     std::vector<Run> _firstVertexRuns;
-    std::vector<std::vector<FaceRun>> _fVertexRuns;
+    std::vector<std::vector<Run>> _fVertexRuns;
 
     // Of the level before.
     std::vector<Run> _edgeRuns;

@@ -25,7 +25,7 @@ constexpr int kManyFaces = 16000; ///< of which most are no longer beside anothe
 
 std::vector<Tile> getTilesOfFaces(TopologyLevel const &level, TileMap const &tileMap) {
     std::vector<Tile> tiles;
-    for (TileMap::FaceRun const &run : tileMap.GetFaceRuns()) {
+    for (TileMap::Run const &run : tileMap.GetFaceRuns()) {
         EXPECT_EQ(run.begin, Index(tiles.size()));
         EXPECT_LT(run.begin, run.end);
         EXPECT_LT(run.tile, tileMap.GetNumTiles());
@@ -47,8 +47,8 @@ std::vector<Tile> getTilesOfVertices(TopologyLevel const &level, TileMap const &
     for (TileMap::Run const &run : tileMap.GetFirstVertexRuns()) {
         add(run.end - run.begin, run.tile);
     }
-    for (std::vector<TileMap::FaceRun> const &runs : tileMap.GetFVertexRuns()) {
-        for (TileMap::FaceRun const &run : runs) {
+    for (std::vector<TileMap::Run> const &runs : tileMap.GetFVertexRuns()) {
+        for (TileMap::Run const &run : runs) {
             add((run.end - run.begin) * run.size, run.tile);
         }
     }
