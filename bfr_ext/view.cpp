@@ -351,7 +351,7 @@ private:
             return true;
         }
         return _options.GetFlatness() > 0 &&
-               isThicker(node, fraction * _options.GetFlatness() / pixels);
+               findThickness(node) * pixels > fraction * _options.GetFlatness();
     }
 
     double findLongestSide(Node &node) {
@@ -368,16 +368,13 @@ private:
         return getMeasures(node).longestSide;
     }
 
-    bool isThicker(Node &node, double length) {
-        Flatness::Bounds const known = getMeasures(node).thickness;
-        if (length < known.least || known.most <= length) {
-            return known.most > length;
+    double findThickness(Node &node) {
+        if (getMeasures(node).thickness < 0) {
+            findCorners(node);
+            double const thickness = _flatness.FindThickness(_cells, node.cell, _corners);
+            getMeasures(node).thickness = thickness;
         }
-        findCorners(node);
-        Flatness::Bounds const found = _flatness.Find(_cells, node.cell, _corners, length);
-        getMeasures(node).thickness = {std::max(known.least, found.least),
-                                       std::min(known.most, found.most)};
-        return found.most > length;
+        return getMeasures(node).thickness;
     }
 
     ViewGeometry const &_geometry;

@@ -39,14 +39,9 @@ enum class CellVisibility : unsigned char {
 
 /// \brief How far base faces are refined to look smooth in a view: trees of cells.
 ///
-/// **Flatness.**  A cell is refined until its facets are closer to the surface than some pixels.  The
-/// bound is a true one.  Points of the surface in a cell are sums of the cell's control points, with
-/// weights that are known for its type: so the heights of these over a plane bound those of the surface.
-/// The plane is that of the corners of a cell that may be refined.  Between some of its points, which are known, the
-/// surface of a cell is nearly linear, and how far it may be from that is found once for all cells of its
-/// type; of base faces and their children outside of lattices it is that of the cells in them.  The range
-/// of all these heights, in which the corners and all points on the sides of the cell are, too, is taken
-/// for the distance between surface and facets.  It
+/// **Flatness.**  A cell is refined until its facets are closer to the surface than some pixels.  That is
+/// estimated: the surface is known at the corners of the cells two steps on, and the range of the heights of these
+/// over the plane of the cell's corners, an eighth longer for what lies between, is taken for the distance.  It
 /// is seen at the least depth, and furthest from the axis, that the box of the control points has in the picture.
 /// Sharp edges and boundaries, whose curve may bend in the plane of a cell, get points of their own
 /// (MakeEdge()).

@@ -71,6 +71,12 @@ public:
         double tolerance = 0;
         float const *positions =
             nullptr; ///< x, y, z of each control vertex, where there is a tolerance
+        /// \brief x, y, z of an eye, or null: the tolerance is then that of places at the distance 1 from it, and
+        /// grows with the distance.
+        ///
+        /// For an error of some pixels in a picture of perspective, \p tolerance is what so many pixels measure at
+        /// the distance 1.
+        float const *eye = nullptr;
         bool generateVaryingTables =
             true; ///< with points of their own, as generateVaryingLocalPoints has
         /// Whether the stencils of points, of varying ones too, are of type double; else float.
@@ -112,7 +118,7 @@ public:
     /// Weights of a local point sum to 1; some are negative.  The same bits for any number of threads.
     ///
     /// \return  null on failure: InvalidArgument (a level out of range or without full topology: see
-    ///          GetRefineUniformOptions(); a channel that the mesh has not; a tolerance that is negative or no number, or without positions), Unsupported (a level that is not refined by hexagonal steps; a
+    ///          GetRefineUniformOptions(); a channel that the mesh has not; a tolerance that is negative or no number, or without positions; an eye without a tolerance), Unsupported (a level that is not refined by hexagonal steps; a
     ///          boundary that follows the paper's rule, VTX_BOUNDARY_NONE, whose edge is named; what has
     ///          no limit: see LimitStencilTableFactory; a mesh of holes alone), or TooLarge (more than 2^28 - 1 patches, or
     ///          2^31 - 1 weights of points).

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "arrays.h"
 #include "errors.h"
+#include "options.h"
 #include "refiner.h"
 
 #include "bfr_ext/levelTessellation.h"
 #include "bfr_ext/surfaceFactory.h"
+#include "bfr_ext/surfacePlaces.h"
+#include "far_ext/stencilTableFactory.h"
 
 #include <cmath>
 #include <utility>
@@ -84,6 +87,22 @@ private:
     LevelTessellation _tessellation;
 };
 
+/// Pairs of u and v: \p count, or any number for -1.
+std::vector<double> takePlaces(py::object const &uv, int count = -1) {
+    Elements<double const> const source = TakeSource<double>(uv, "uv", count, true);
+    if (source.desc.length != 2) {
+        throw py::value_error("uv: u and v of each place are needed, the shape is " +
+                              DescribeShape(source.array));
+    }
+    std::vector<double> places(source.data, source.data + 2 * std::size_t(source.count));
+    for (std::size_t i = 0; i < places.size(); ++i) {
+        if (!std::isfinite(places[i])) {
+            throw py::value_error("uv: row " + std::to_string(i / 2) + " is not finite");
+        }
+    }
+    return places;
+}
+
 /// A surface, and how many points its mesh has.
 class FaceSurface {
 public:
@@ -150,22 +169,6 @@ private:
             take(double());
         }
         return result;
-    }
-
-    /// Pairs of u and v.
-    static std::vector<double> takePlaces(py::object const &uv) {
-        Elements<double const> const source = TakeSource<double>(uv, "uv", -1, true);
-        if (source.desc.length != 2) {
-            throw py::value_error("uv: u and v of each place are needed, the shape is " +
-                                  DescribeShape(source.array));
-        }
-        std::vector<double> places(source.data, source.data + 2 * std::size_t(source.count));
-        for (std::size_t i = 0; i < places.size(); ++i) {
-            if (!std::isfinite(places[i])) {
-                throw py::value_error("uv: row " + std::to_string(i / 2) + " is not finite");
-            }
-        }
-        return places;
     }
 
     /// Points, points and first derivatives, or those and second ones.
@@ -250,41 +253,121 @@ public:
         }
         return hasSurface;
     }
+    int GetNumFaces() const { return _factory->GetNumFaces(); }
+    int GetNumFVarChannels() const { return _factory->GetNumFVarChannels(); }
+    /// Points of the mesh: vertices, or values of \p channel, which is in range.
+    int CountVertices() const { return _factory->GetLevel().GetNumVertices(); }
+    int CountValues(int channel) const {
+        return _refiner->Read([&](FarExt::TopologyRefiner const &) {
+            return _factory->GetLevel().GetNumFVarValues(channel);
+        });
+    }
+    /// Calls function(factory) without the interpreter's lock, while no thread refines.
+    template <typename FUNCTION>
+    void Read(FUNCTION const &function) const {
+        _refiner->Read([&](FarExt::TopologyRefiner const &) { function(*_factory); });
+    }
+
     FaceSurface MakeVertexSurface(int face) const {
-        return make(face, countVertices(), [&](auto *surface, FarExt::CallStatus *status) {
+        return make(face, CountVertices(), [&](auto *surface, FarExt::CallStatus *status) {
             _factory->InitVertexSurface(face, surface, status);
         });
     }
     FaceSurface MakeVaryingSurface(int face) const {
-        return make(face, countVertices(), [&](auto *surface, FarExt::CallStatus *status) {
+        return make(face, CountVertices(), [&](auto *surface, FarExt::CallStatus *status) {
             _factory->InitVaryingSurface(face, surface, status);
         });
     }
     FaceSurface MakeFaceVaryingSurface(int face, int channel) const {
         CheckIndex(channel, _factory->GetNumFVarChannels(), "channel");
-        int const numValues = _refiner->Read([&](FarExt::TopologyRefiner const &) {
-            return _factory->GetLevel().GetNumFVarValues(channel);
-        });
-        return make(face, numValues, [&](auto *surface, FarExt::CallStatus *status) {
+        return make(face, CountValues(channel), [&](auto *surface, FarExt::CallStatus *status) {
             _factory->InitFaceVaryingSurface(face, surface, channel, status);
         });
     }
 
 private:
     void checkFace(int face) const { CheckIndex(face, _factory->GetNumFaces(), "face"); }
-    int countVertices() const { return _factory->GetLevel().GetNumVertices(); }
     template <typename INIT>
     FaceSurface make(int face, int numMeshPoints, INIT const &init) const {
         checkFace(face);
         BfrExt::Surface<double> surface;
         FarExt::CallStatus status;
-        _refiner->Read([&](FarExt::TopologyRefiner const &) { init(&surface, &status); });
+        Read([&](BfrExt::SurfaceFactory const &) { init(&surface, &status); });
         RaiseUnlessOk(status);
         return {std::move(surface), numMeshPoints};
     }
 
     std::shared_ptr<Refiner> _refiner;
     std::unique_ptr<BfrExt::SurfaceFactory> _factory;
+};
+
+/// BfrExt::SurfacePlaces, and how many points its mesh has.
+class Places {
+public:
+    Places(FaceSurfaceFactory const &factory, py::object const &faces, py::object const &uv,
+           py::object const &interpolationMode, int fvarChannel) {
+        using FarExt::StencilMode;
+        py::array_t<int> const ofPlaces = TakeIndices(faces, "faces");
+        int const *const indices = ofPlaces.data();
+        auto const numPlaces = int(ofPlaces.size());
+        for (int i = 0; i < numPlaces; ++i) {
+            if (indices[i] < 0 || indices[i] >= factory.GetNumFaces()) {
+                throw py::index_error("faces: row " + std::to_string(i) + " is " +
+                                      std::to_string(indices[i]) + ", not one of the " +
+                                      std::to_string(factory.GetNumFaces()) + " faces");
+            }
+        }
+        std::vector<double> const coords = takePlaces(uv, numPlaces);
+        BfrExt::SurfacePlaces<double>::Options options;
+        options.interpolationMode = TakeEnum<StencilMode>(interpolationMode, "interpolation_mode");
+        options.fvarChannel = fvarChannel;
+        bool const isOfChannel = options.interpolationMode == FarExt::INTERPOLATE_FACE_VARYING;
+        if (isOfChannel) {
+            CheckIndex(fvarChannel, factory.GetNumFVarChannels(), "fvar_channel");
+        }
+        _numMeshPoints = isOfChannel ? factory.CountValues(fvarChannel) : factory.CountVertices();
+        FarExt::CallStatus status;
+        factory.Read([&](BfrExt::SurfaceFactory const &surfaces) {
+            _places = BfrExt::SurfacePlaces<double>::Create(surfaces, numPlaces, indices,
+                                                            coords.data(), options, &status);
+        });
+        RaiseUnlessOk(status);
+    }
+
+    int GetNumPlaces() const { return _places->GetNumPlaces(); }
+
+    Points Evaluate(py::object const &points) const {
+        auto const source = TakeSource<double>(points, "points", _numMeshPoints);
+        Points result = makeResult(source.desc.length);
+        double *const p = result.mutable_data();
+        py::gil_scoped_release const release;
+        _places->Evaluate(source.data, PointDescriptor(source.desc.length, source.desc.stride), p,
+                          PointDescriptor(source.desc.length));
+        return result;
+    }
+    py::tuple EvaluateWithDerivatives(py::object const &points) const {
+        auto const source = TakeSource<double>(points, "points", _numMeshPoints);
+        Points results[3];
+        double *data[3];
+        for (int i = 0; i < 3; ++i) {
+            results[i] = makeResult(source.desc.length);
+            data[i] = results[i].mutable_data();
+        }
+        {
+            py::gil_scoped_release const release;
+            _places->Evaluate(source.data, PointDescriptor(source.desc.length, source.desc.stride),
+                              data[0], data[1], data[2], PointDescriptor(source.desc.length));
+        }
+        return py::make_tuple(results[0], results[1], results[2]);
+    }
+
+private:
+    Points makeResult(int length) const {
+        return Points({py::ssize_t(GetNumPlaces()), py::ssize_t(length)});
+    }
+
+    std::unique_ptr<BfrExt::SurfacePlaces<double>> _places;
+    int _numMeshPoints = 0;
 };
 
 } // namespace
@@ -318,12 +401,16 @@ void BindSurfaces(py::module_ &module) {
                                "int32: the places that are corners, of the shape (facets, "
                                "facet_size), or those of all\npolygons one behind the other.");
 
-    py::class_<FaceSurface>(module, "Surface",
-                            "The limit surface of a base face, made by a SurfaceFactory: a "
-                            "function of u and v.\n\nPoints are those of the mesh, numbers of "
-                            "the shape (points,) or (points, length): float32\nand float64 are "
-                            "read in place.  Results are float64.  uv is of the shape (places, "
-                            "2), or a\nLevelTessellation.")
+    py::class_<FaceSurface>(
+        module, "Surface",
+        "The limit surface of a base face, made by a SurfaceFactory: a function of u and v.\n\n"
+        "Points are those of the mesh, numbers of the shape (points,) or (points, length): "
+        "float32\n"
+        "and float64 are read in place.  Results are float64.  uv is of the shape (places, 2), or "
+        "a\n"
+        "LevelTessellation.  At a (u, v) they are those of bicubic patches, some millionths of the "
+        "size\n"
+        "of the mesh from the surface; those of a LevelTessellation, and stencils, are exact.")
         .def_property_readonly("face_size", &FaceSurface::GetFaceSize, "Vertices of the face.")
         .def_property_readonly("control_points", &FaceSurface::GetControlPoints,
                                "int32: the points of the mesh that it depends on, those of the "
@@ -373,6 +460,38 @@ void BindSurfaces(py::module_ &module) {
              "face_varying_surface(face, channel=0)\n\nThe same of face-varying data, whose "
              "points are values.",
              py::arg("face"), py::arg("channel") = 0);
+
+    py::class_<Places>(
+        module, "SurfacePlaces",
+        "SurfacePlaces(factory, faces, uv, *, interpolation_mode='vertex', fvar_channel=0)\n\n"
+        "Places of any faces, in any order, that are evaluated together, frame after frame, on as\n"
+        "many threads as set_num_threads or OpenMP say: ray hits, samples, roots of hair.  The\n"
+        "factory need not live on.  Points are those of Surface.evaluate at (u, v).\n\n"
+        "Args:\n"
+        "    factory: a SurfaceFactory\n"
+        "    faces: integers, shape (places,)\n"
+        "    uv: u and v of each place in its face, shape (places, 2); moved to the boundary of\n"
+        "        the face where they are outside\n"
+        "    interpolation_mode: 'vertex', 'varying' or 'face_varying'\n"
+        "    fvar_channel: of face-varying points, which are values of this channel\n\n"
+        "Raises IndexError for a face out of range and ValueError for uv that are not finite, "
+        "which\n"
+        "name the row, and StatusError for a face without a surface.")
+        .def(py::init<FaceSurfaceFactory const &, py::object, py::object, py::object, int>(),
+             py::arg("factory").none(false), py::arg("faces"), py::arg("uv"), py::kw_only(),
+             py::arg("interpolation_mode") = "vertex", py::arg("fvar_channel") = 0)
+        .def_property_readonly("num_places", &Places::GetNumPlaces, "Places that were given.")
+        .def("evaluate", &Places::Evaluate,
+             "evaluate(points)\n\n"
+             "The points at all places, in the order of these: float64, shape (places, length).\n\n"
+             "Args:\n"
+             "    points: those of the mesh, shape (points,) or (points, length); float64 is read\n"
+             "        in place",
+             py::arg("points"))
+        .def("evaluate_with_derivatives", &Places::EvaluateWithDerivatives,
+             "evaluate_with_derivatives(points)\n\n"
+             "Returns (points, du, dv), each of the shape (places, length).",
+             py::arg("points"));
 }
 
 } // namespace OpenSubdivHex::Python

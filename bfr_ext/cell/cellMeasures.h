@@ -32,11 +32,11 @@ struct Box {
 
 /// \brief What is known of a cell wherever it is seen from, as far as a view has asked for it.
 struct CellMeasures {
-    Box box;                    ///< of its points
-    double longestSide = -1;    ///< between corners; -1: not found
-    Flatness::Bounds thickness; ///< so far
-    int firstChild = 0;         ///< in the same face; 0: none were asked for
-    int facing = -1;            ///< in the same face; -1: not found
+    Box box;                 ///< of its points
+    double longestSide = -1; ///< between corners; -1: not found
+    double thickness = -1;   ///< as Flatness estimates it; -1: not found
+    int firstChild = 0;      ///< in the same face; 0: none were asked for
+    int facing = -1;         ///< in the same face; -1: not found
 };
 
 /// \brief Where a cell faces: (Du x Dv) at its points.

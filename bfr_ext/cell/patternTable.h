@@ -34,10 +34,7 @@ enum class PatternOf {
     ChildCorner,
     RingCell,
     RingItem,
-    CellBounds,
-    HeightBounds,
-    HeightFit,
-    TermIntervals,
+    SurfaceSamples,
     SlopeBounds,
     SecondDerivatives,
     PatchPoints

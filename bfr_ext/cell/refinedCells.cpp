@@ -11,7 +11,6 @@ std::size_t RefinedCells::add(std::size_t number) {
     }
     for (std::size_t cell = first; cell < _size; ++cell) {
         _cells[cell].firstChild = 0;
-        _cells[cell].bounds = nullptr;
     }
     return first;
 }

@@ -3,7 +3,6 @@
 #define OPENSUBDIVHEX_BFR_EXT_CELL_REFINED_CELLS_H
 
 #include "cellValues.h"
-#include "heightBounds.h"
 
 #include <deque>
 
@@ -36,12 +35,11 @@ public:
     std::size_t GetFirstChild(std::size_t cell) {
         return _cells[cell].firstChild > 0 ? _cells[cell].firstChild : makeChildren(cell);
     }
-    /// Null of a cell whose type few cells are of.
-    HeightBounds const *GetHeightBounds(std::size_t cell) {
-        if (!_cells[cell].bounds && hasHeightBounds(cell)) {
-            _cells[cell].bounds = &HeightBounds::Find(_cells[cell].values.GetType());
-        }
-        return _cells[cell].bounds;
+    /// Whether many cells are of its type, so that SurfaceSamples are worth their making; beside faces of hundreds of
+    /// vertices these would take minutes.
+    bool HasSamples(std::size_t cell) const {
+        constexpr int kMaxPoints = 128;
+        return hasCommonType(cell) && _cells[cell].values.GetNumPoints() <= kMaxPoints;
     }
 
     /// \brief Writes the surface at a corner.
@@ -61,19 +59,13 @@ public:
 private:
     struct Cell {
         CellValues values;
-        std::size_t firstChild = 0;           // 0: not made
-        HeightBounds const *bounds = nullptr; // once they are asked for
+        std::size_t firstChild = 0; // 0: not made
     };
 
     std::size_t add(std::size_t number);
     std::size_t makeChildren(std::size_t cell);
     bool hasCommonType(std::size_t cell) const {
         return _cells[cell].values.GetLevel() >= _firstCommonLevel;
-    }
-    bool hasHeightBounds(std::size_t cell) const {
-        // Beside faces of hundreds of vertices bounds would take minutes.
-        constexpr int kMaxPoints = 128;
-        return hasCommonType(cell) && _cells[cell].values.GetNumPoints() <= kMaxPoints;
     }
 
     std::deque<Cell> _cells;

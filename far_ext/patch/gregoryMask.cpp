@@ -155,8 +155,9 @@ void AddInnerPoints(CurveShape const &shape, CurveNeighbor const neighbors[2], d
     addInnerPoints(curve, makeInward(neighbors, lengths, units), mask);
 }
 
-void AddKitePoints(CurveShape const &shape, CurveNeighbor const neighbors[2], double signOfM,
-                   int numSides, int side, GregoryMask &mask) {
+void AddKitePoints(CurveShape const &shape, CurveNeighbor const neighbors[2],
+                   SpokeShape const &spoke, double signOfM, int numSides, int side,
+                   GregoryMask &mask) {
     // The regular polygon with sides of length 1.
     double const apothem = 1 / (2 * std::tan(kPi / numSides));
     double const unit = 2 * std::sin(kPi / numSides); // of the centre's derivatives, radius 1
@@ -170,11 +171,12 @@ void AddKitePoints(CurveShape const &shape, CurveNeighbor const neighbors[2], do
     }
     // At the middle the frame is c' of the whole, which is 1 there, and D.  Sides of kites are half
     // as long.
-    CurveNeighbor const spoke = {kPi / 2, apothem};
+    double const lengths[2] = {spoke.lengths[0] * apothem, spoke.lengths[1] * apothem};
+    CurveNeighbor const atMiddle = {kPi / 2, lengths[0]};
     CurveNeighbor const before = {neighbors[0].angle, neighbors[0].length / 2};
     CurveNeighbor const behind = {neighbors[1].angle, neighbors[1].length / 2};
-    CurveNeighbor const ofFirst[2] = {before, spoke};
-    CurveNeighbor const ofSecond[2] = {spoke, behind};
+    CurveNeighbor const ofFirst[2] = {before, atMiddle};
+    CurveNeighbor const ofSecond[2] = {atMiddle, behind};
     double const firstLengths[2] = {shape.ends[0].length / 2, 0.5};
     double const secondLengths[2] = {0.5, shape.ends[1].length / 2};
     addInnerPoints(first, makeInward(ofFirst, firstLengths), mask);
@@ -184,23 +186,23 @@ void AddKitePoints(CurveShape const &shape, CurveNeighbor const neighbors[2], do
     Curve line;
     line.points[0] = first.points[3];
     line.points[3] = makePoint(kRowCenter);
-    line.points[1] = line.points[0] + apothem / 3 * first.across[2];
-    line.points[2] = line.points[3] + apothem * unit / 3 * makeDerivative(kRowCenter, direction);
+    line.points[1] = line.points[0] + lengths[0] / 3 * first.across[2];
+    line.points[2] = line.points[3] + lengths[1] * unit / 3 * makeDerivative(kRowCenter, direction);
     // To the left of the line, which leads to the centre, lies the first half.
     line.across[0] = -2.0 * makeTangent(first, 2);
     line.across[2] = unit * makeDerivative(kRowCenter, direction - kPi / 2);
-    line.across[1] = 0.5 * (line.across[0] + line.across[2]);
+    line.across[1] = (1 + spoke.blend) / 2 * (line.across[0] + line.across[2]);
     mask.points.push_back(line.points[1]);
     mask.points.push_back(line.points[2]);
     CurveNeighbor const halfSide = {kPi / 2, 0.5};
-    CurveNeighbor const otherLine = {2 * kPi / numSides, apothem};
+    CurveNeighbor const otherLine = {2 * kPi / numSides, lengths[1]};
     CurveNeighbor const ofLine[2] = {halfSide, otherLine};
-    double const lengths[2] = {apothem, apothem};
     Inward const inward = makeInward(ofLine, lengths);
     addInnerPoints(line, inward, mask);
     // Of the kite on the other side the line leads from the centre to the middle.
     CurveNeighbor const fromCenter[2] = {otherLine, halfSide};
-    auto const points = makeInnerPoints(reverse(line), makeInward(fromCenter, lengths));
+    double const reversed[2] = {lengths[1], lengths[0]};
+    auto const points = makeInnerPoints(reverse(line), makeInward(fromCenter, reversed));
     mask.points.push_back(points.second);
     mask.points.push_back(points.first);
 }

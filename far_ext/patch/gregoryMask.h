@@ -64,6 +64,12 @@ void AddCurvePoints(CurveShape const &shape, GregoryMask &mask);
 void AddInnerPoints(CurveShape const &shape, CurveNeighbor const neighbors[2], double signOfM,
                     bool isReverse, GregoryMask &mask);
 
+/// The lines from the middles of sides to the centre, in faces with kites.
+struct SpokeShape {
+    double lengths[2]; ///< of the derivatives at both ends, in terms of those of a regular face
+    double blend;      ///< how much more than the mean of its ends the derivative across has
+};
+
 /// The first points of a side of a face with kites: those in its halves, and its middle.
 inline constexpr int kNumHalfPoints = 5;
 
@@ -78,10 +84,12 @@ inline constexpr int kNumHalfPoints = 5;
 ///
 /// \param shape      of the side, counter-clockwise
 /// \param neighbors  the sides before and behind
+/// \param spoke      the lines from middles to the centre
 /// \param signOfM    -1 where M is the derivative away from the face
 /// \param side       its number; corner 0 lies in the direction of U of the centre
-void AddKitePoints(CurveShape const &shape, CurveNeighbor const neighbors[2], double signOfM,
-                   int numSides, int side, GregoryMask &mask);
+void AddKitePoints(CurveShape const &shape, CurveNeighbor const neighbors[2],
+                   SpokeShape const &spoke, double signOfM, int numSides, int side,
+                   GregoryMask &mask);
 
 } // namespace OpenSubdivHex::FarExt::internal
 

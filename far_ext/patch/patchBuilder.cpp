@@ -7,6 +7,7 @@
 
 #include "far_ext/limit/limitMask.h"
 #include "far_ext/limit/rowSteps.h"
+#include "far_ext/vtr/baseCoords.h"
 #include "far_ext/vtr/parallel.h"
 #include "far_ext/vtr/pi.h"
 
@@ -174,9 +175,15 @@ private:
     bool findBesideOther(Index vert) const;
     std::uint8_t getVertexCode(Index vert) const { return _codes[std::size_t(vert)].code; }
     bool isBesideOther(Index vert) const { return _codes[std::size_t(vert)].isBesideOther; }
+    // By PatchSite::surfaceFace.
+    std::uint8_t getSurfaceFace(Index face, int half) const {
+        return _surfaceFaces[2 * std::size_t(face) + std::size_t(half)];
+    }
+    std::uint8_t getSurfaceFace(CellSide curve) const;
     PatchSite getSite(PatchQuantity quantity, CellSide const &curve, Index vert, Index other) const;
     void addShares(Index vert, LimitStencils::KeptRow &kept) const;
     CellCurve getCellCurve(PatchCell cell, int side) const;
+    SpokeShape getSpoke(int faceSize) const;
     Border const *findBorder(Index face) const {
         auto const found = _borders.find(face);
         return found != _borders.end() ? &found->second : nullptr;
@@ -240,6 +247,7 @@ private:
         bool isBesideOther;
     };
     std::vector<VertexCode> _codes;
+    std::vector<std::uint8_t> _surfaceFaces; // by face and half
     std::vector<Index> _rowOfVertex;
     struct FurtherRow {
         Index vert;
@@ -277,6 +285,15 @@ CallStatus PatchBuilder::LevelBuilder::FindLimits() {
         Index const vert = _verts[std::size_t(i)];
         _codes[std::size_t(vert)] = {findVertexCode(vert), findBesideOther(vert)};
     });
+    _surfaceFaces.assign(2 * std::size_t(_level.numFaces), 0);
+    if (_depth > _surfaceDepth) {
+        ParallelFor(2 * _level.numFaces, [&](Index i) {
+            Index const face = FindBaseFace(_mesh, _surfaceDepth, _depth, {i / 2, i % 2});
+            _surfaceFaces[std::size_t(i)] =
+                std::uint8_t(std::min(_mesh.levels[std::size_t(_surfaceDepth)].GetFaceSize(face),
+                                      PatchSite::kMaxSurfaceFaceSize));
+        });
+    }
     _frames.emplace(_level, _rows, _verts);
     _rowOfVertex.assign(std::size_t(_level.numVertices), Far::INDEX_INVALID);
     for (Index vert : _verts) {
@@ -383,6 +400,18 @@ bool PatchBuilder::LevelBuilder::findBesideOther(Index vert) const {
     });
 }
 
+std::uint8_t PatchBuilder::LevelBuilder::getSurfaceFace(CellSide curve) const {
+    std::uint8_t result = PatchSite::kMaxSurfaceFaceSize;
+    for (curve.side = 0; curve.side < 2; ++curve.side) {
+        if (hasSide(curve)) {
+            int ofCell = 0;
+            PatchCell const cell = getCell(curve, &ofCell);
+            result = std::min(result, getSurfaceFace(cell.face, cell.half));
+        }
+    }
+    return result;
+}
+
 PatchSite PatchBuilder::LevelBuilder::getSite(PatchQuantity quantity, CellSide const &curve,
                                               Index vert, Index other) const {
     int const steps = getSteps();
@@ -393,6 +422,7 @@ PatchSite PatchBuilder::LevelBuilder::getSite(PatchQuantity quantity, CellSide c
     site.otherVert = getVertexCode(other);
     site.isBesideOther = isBesideOther(vert);
     site.isOtherBesideOther = isBesideOther(other);
+    site.surfaceFace = getSurfaceFace(curve);
     if (curve.isDiagonal) {
         site.kind = PatchSite::kDiagonal;
         return site;
@@ -439,6 +469,12 @@ void PatchBuilder::LevelBuilder::addShares(Index vert, LimitStencils::KeptRow &k
     site.kind = PatchSite::kVertex;
     site.vert = getVertexCode(vert);
     site.isBesideOther = isBesideOther(vert);
+    site.surfaceFace = PatchSite::kMaxSurfaceFaceSize;
+    for (Index const face : _level.GetVertexFaces(vert)) {
+        for (int half = 0; half < 2; ++half) {
+            site.surfaceFace = std::min(site.surfaceFace, getSurfaceFace(face, half));
+        }
+    }
     double const ofEdges = _builder._constants.Get(site);
     site.quantity = PatchQuantity::DiagonalShare;
     double const ofDiagonals = site.isBesideOther ? 0 : _builder._constants.Get(site);
@@ -531,6 +567,23 @@ CallStatus PatchBuilder::LevelBuilder::formDirections(
         }
     }
     return status;
+}
+
+SpokeShape PatchBuilder::LevelBuilder::getSpoke(int faceSize) const {
+    PatchSite site;
+    site.steps = std::uint8_t(std::min(_depth - _surfaceDepth, PatchSite::kMaxSteps));
+    site.kind = PatchSite::kSpoke;
+    site.smallFace = std::uint8_t(std::min(faceSize, PatchSite::kMaxFaceSize));
+    SpokeShape spoke{};
+    std::uint8_t const ends[2] = {PatchSite::kMiddle, PatchSite::kCenter};
+    for (int end = 0; end < 2; ++end) {
+        site.vert = ends[end];
+        spoke.lengths[end] = _builder._constants.Get(site);
+    }
+    site.quantity = PatchQuantity::Blend;
+    site.vert = 0;
+    spoke.blend = _builder._constants.Get(site);
+    return spoke;
 }
 
 CallStatus PatchBuilder::LevelBuilder::FindBorders() {
@@ -732,6 +785,7 @@ void PatchBuilder::LevelBuilder::addSides(CellSide const *sides, int numSides, b
 void PatchBuilder::LevelBuilder::addKites(Index face) {
     int const size = getSize(face);
     Index const rowOfCenter = addCenterRow({CenterRow::kCenter, face, 0});
+    SpokeShape const spoke = getSpoke(size);
     for (int i = 0; i < size; ++i) {
         CellSide const side = getCellSide(face, 0, i);
         CurvePoints &points = getPoints(side);
@@ -742,7 +796,7 @@ void PatchBuilder::LevelBuilder::addKites(Index face) {
         key << size << i << sign << hasHalves;
         addToKey(curve, key);
         GregoryMask const *const mask = _masks.Find(key, [&](GregoryMask &made) {
-            AddKitePoints(curve.shape, curve.neighbors, sign, size, i, made);
+            AddKitePoints(curve.shape, curve.neighbors, spoke, sign, size, i, made);
             if (hasHalves) {
                 made.points.erase(made.points.begin(), made.points.begin() + kNumHalfPoints);
             }

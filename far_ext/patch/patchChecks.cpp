@@ -56,6 +56,9 @@ CallStatus checkIsolation(TopologyRefiner const &refiner, PatchTableFactory::Opt
     if (options.tolerance > 0 && !options.positions) {
         return fail("there is a tolerance of patches without positions");
     }
+    if (options.eye && !(options.tolerance > 0)) {
+        return fail("there is an eye without a tolerance of patches");
+    }
     return CallStatus();
 }
 
@@ -103,7 +106,7 @@ CallStatus FindPatchCells(TopologyRefiner const &refiner, PatchTableFactory::Opt
     if (minLevel == level) {
         cells.emplace(mesh, level);
     } else if (options.tolerance > 0) {
-        PatchDeviation const deviation(refiner, options.positions, level - 1);
+        PatchDeviation const deviation(refiner, options.positions, options.eye, level - 1);
         CallStatus result;
         cells.emplace(mesh, minLevel, level, [&](int depth, std::vector<Index> const &faces) {
             std::vector<unsigned char> isRefined(faces.size(), 0);

@@ -16,7 +16,10 @@ constexpr auto kEdgeShare = PatchQuantity::EdgeShare;
 constexpr auto kDiagonalShare = PatchQuantity::DiagonalShare;
 constexpr auto kEdge = PatchSite::kEdge;
 constexpr auto kDiagonal = PatchSite::kDiagonal;
+constexpr auto kLongBoundary = PatchSite::kLongBoundary;
+constexpr auto kSharpEdge = PatchSite::kSharpEdge;
 constexpr auto kVertex = PatchSite::kVertex;
+constexpr auto kSpoke = PatchSite::kSpoke;
 
 // In the order of the members of PatchSite.
 constexpr Constant kSmoothConstants[] = {
@@ -29,7 +32,8 @@ std::uint64_t PatchSite::GetKey() const {
     std::uint64_t key = 0;
     for (std::uint8_t part :
          {std::uint8_t(std::uint8_t(quantity) << 4 | std::uint8_t(kind)), steps, vert, otherVert,
-          smallFace, largeFace, std::uint8_t(isBesideOther), std::uint8_t(isOtherBesideOther)}) {
+          smallFace, largeFace,
+          std::uint8_t((isBesideOther ? 2 : 0) | (isOtherBesideOther ? 1 : 0)), surfaceFace}) {
         key = key << 8 | part;
     }
     return key;
@@ -39,7 +43,7 @@ double PatchConstants::GetDefault(PatchSite const &site) {
     if (site.quantity != PatchQuantity::Length) {
         return 0;
     }
-    if (site.steps == 0) {
+    if (site.steps == 0 || site.kind == PatchSite::kSpoke) {
         return 1;
     }
     constexpr double kIrregular[] = {0.85, 0.90, 0.98}; // by steps, from 1 on

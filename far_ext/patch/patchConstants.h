@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <unordered_map>
+#include <vector>
 
 namespace OpenSubdivHex::FarExt::internal {
 
@@ -24,7 +25,8 @@ enum class PatchQuantity : std::uint8_t {
 
 /// \brief What a constant depends on.
 struct PatchSite {
-    enum Kind : std::uint8_t { kEdge, kDiagonal, kLongBoundary, kSharpEdge, kVertex };
+    /// The line from the middle of a side to the centre of a face with kites is a spoke.
+    enum Kind : std::uint8_t { kEdge, kDiagonal, kLongBoundary, kSharpEdge, kVertex, kSpoke };
     /// At a vertex: of the surface level with so many faces (kBase + 6: six or more), or made so many steps
     /// before the level (2: or more), or sharp.
     static constexpr std::uint8_t kBase = 10;
@@ -33,17 +35,25 @@ struct PatchSite {
     static constexpr int kMaxAge = 2;
     static constexpr int kMaxSteps = 3;
     static constexpr int kMaxFaceSize = 8;
+    static constexpr int kMaxSurfaceFaceSize = 6;
+    /// The ends of a spoke.
+    static constexpr std::uint8_t kMiddle = 60;
+    static constexpr std::uint8_t kCenter = 61;
 
     PatchQuantity quantity = PatchQuantity::Length;
     std::uint8_t steps = 0; ///< behind the surface level; kMaxSteps: or more
     Kind kind = kEdge;
     std::uint8_t vert = 0;
     std::uint8_t otherVert = 0; ///< at the other end
-    std::uint8_t smallFace = 0; ///< sizes of the faces of an edge; 0 where it has one or none
+    /// Sizes of the faces of an edge, or of that of a spoke; 0 where it has one or none.
+    std::uint8_t smallFace = 0;
     std::uint8_t largeFace = 0;
     /// Whether a face of the vertex, and of the other one, is no hexagon.
     bool isBesideOther = false;
     bool isOtherBesideOther = false;
+    /// The size of the face of the surface level in which it lies, the least of several; 6: six or more; 0 at
+    /// that level.
+    std::uint8_t surfaceFace = 0;
 
     std::uint64_t GetKey() const;
 };
@@ -56,6 +66,9 @@ public:
     explicit PatchConstants(FaceMask mask);
 
     double Get(PatchSite const &site) const {
+        if (_sites) {
+            _sites->push_back(site);
+        }
         auto const found = _values.find(site.GetKey());
         return found != _values.end() ? found->second : GetDefault(site);
     }
@@ -65,6 +78,9 @@ public:
         _hasShares = _hasShares || site.kind == PatchSite::kVertex;
     }
 
+    /// Has Get() add to \p sites whatever it is asked for, by one thread.
+    void Record(std::vector<PatchSite> *sites) { _sites = sites; }
+
     /// What a site without a constant of its own has.
     static double GetDefault(PatchSite const &site);
     /// Whether any vertex has shares.
@@ -73,6 +89,7 @@ public:
 private:
     std::unordered_map<std::uint64_t, double> _values;
     bool _hasShares = false;
+    std::vector<PatchSite> *_sites = nullptr;
 };
 
 } // namespace OpenSubdivHex::FarExt::internal

@@ -160,8 +160,11 @@ private:
 } // namespace
 
 PatchDeviation::PatchDeviation(TopologyRefiner const &refiner, float const *positions,
-                               int lastLevel)
-    : _refiner(refiner) {
+                               float const *eye, int lastLevel)
+    : _refiner(refiner), _hasEye(eye != nullptr) {
+    if (eye) {
+        std::copy_n(eye, 3, _eye.begin());
+    }
     std::vector<Position> current(std::size_t(refiner.GetLevel(0).GetNumVertices()));
     for (std::size_t i = 0; i < current.size(); ++i) {
         for (std::size_t k = 0; k < 3; ++k) {
@@ -266,8 +269,13 @@ CallStatus PatchDeviation::Measure(int depth, std::vector<Index> const &faces,
             add(difference, -1, point.p);
             Vector const normal = cross(point.ds, point.dt);
             double const length = std::sqrt(dot(normal, normal));
-            double const distance = length > 0 ? std::abs(dot(difference, normal)) / length
-                                               : std::sqrt(dot(difference, difference));
+            double distance = length > 0 ? std::abs(dot(difference, normal)) / length
+                                         : std::sqrt(dot(difference, difference));
+            if (_hasEye) {
+                Vector toEye = _eye;
+                add(toEye, -1, point.p);
+                distance /= std::sqrt(dot(toEye, toEye));
+            }
             ofCells[std::size_t(i)] = std::max(ofCells[std::size_t(i)], distance);
         }
     });

@@ -21,8 +21,10 @@ public:
     using Vector = std::array<double, 3>;
 
     /// \param positions  x, y, z of the control vertices
+    /// \param eye        x, y, z, or null: distances are in terms of that from the eye
     /// \param lastLevel  of cells that are measured; the refiner has two levels more
-    PatchDeviation(TopologyRefiner const &refiner, float const *positions, int lastLevel);
+    PatchDeviation(TopologyRefiner const &refiner, float const *positions, float const *eye,
+                   int lastLevel);
 
     /// \brief The largest distance in the cells of each of some faces of a level, which ascend; infinite for
     /// faces that are made of kites.
@@ -31,6 +33,8 @@ public:
 
 private:
     TopologyRefiner const &_refiner;
+    bool const _hasEye;
+    Vector _eye{};
     std::vector<std::vector<Vector>> _positions; // by level
 };
 

@@ -3,11 +3,32 @@
 
 #include "far_ext/stencilTableFactory.h"
 
+#include <algorithm>
 #include <map>
+#include <utility>
 
 namespace OpenSubdivHex::FarExt::internal {
 
 using Far::Index;
+
+namespace {
+
+// Sorts by index, with one term for each.
+void sumEqual(std::vector<std::pair<Index, double>> &terms) {
+    std::stable_sort(terms.begin(), terms.end(),
+                     [](auto const &a, auto const &b) { return a.first < b.first; });
+    std::size_t size = 0;
+    for (auto const &term : terms) {
+        if (size > 0 && terms[size - 1].first == term.first) {
+            terms[size - 1].second += term.second;
+        } else {
+            terms[size++] = term;
+        }
+    }
+    terms.resize(size);
+}
+
+} // namespace
 
 VaryingPoints::VaryingPoints(TopologyRefiner const &refiner, int channel, PatchCells const &cells)
     : _refiner(refiner), _channel(channel), _lastLevel(cells.GetLastLevel()) {
@@ -78,20 +99,24 @@ CallStatus VaryingPoints::MakeStencils(PointStencils<REAL> &stencils) const {
                    ? vert
                    : _refiner.GetHierarchy().channels[std::size_t(_channel)].valuesOfVertices[vert];
     };
-    std::map<Index, double> sum;
+    std::vector<std::pair<Index, double>> terms;
+    stencils.sizes.reserve(_firstVerts.size() - 1);
     for (std::size_t point = 0; point + 1 < _firstVerts.size(); ++point) {
-        sum.clear();
+        terms.clear();
         double const weight = 1.0 / (_firstVerts[point + 1] - _firstVerts[point]);
         for (int i = _firstVerts[point]; i < _firstVerts[point + 1]; ++i) {
             auto const row = std::size_t(getRow(_verts[std::size_t(i)]));
             int const begin = table->GetOffsets()[row];
             for (int k = begin; k < begin + table->GetSizes()[row]; ++k) {
-                sum[table->GetControlIndices()[std::size_t(k)]] +=
-                    weight * double(table->GetWeights()[std::size_t(k)]);
+                terms.emplace_back(table->GetControlIndices()[std::size_t(k)],
+                                   weight * double(table->GetWeights()[std::size_t(k)]));
             }
         }
-        stencils.sizes.push_back(int(sum.size()));
-        for (auto const &term : sum) {
+        if (weight < 1) {
+            sumEqual(terms);
+        }
+        stencils.sizes.push_back(int(terms.size()));
+        for (auto const &term : terms) {
             stencils.indices.push_back(term.first);
             stencils.weights.push_back(REAL(term.second));
         }

@@ -4,8 +4,8 @@
 A TopologyRefiner takes a base mesh as arrays and refines it; its levels are arrays.  Values, such
 as positions, are refined with a RefinementEvaluator, with a StencilTable and one of the evaluators
 CpuEvaluator and OmpEvaluator, or level by level with a PrimvarRefiner.  A LimitStencilTable has
-points and tangents of the limit surface, a PatchTable patches close to it for any place, and a
-SurfaceFactory the surfaces of the base faces.
+points and tangents of the limit surface, a PatchTable patches close to it for any place, a
+SurfaceFactory the surfaces of the base faces, and SurfacePlaces any number of places on these.
 
 Names are those of the C++ API, in Python's spelling.  Values are float32 arrays.  What a
 function reads may have any type of number and any layout, and may be a list: float32 (or float64,

@@ -308,6 +308,24 @@ class SurfaceFactory:
     def varying_surface(self, face: int) -> Surface: ...
     def vertex_surface(self, face: int) -> Surface: ...
 
+class SurfacePlaces:
+    def __init__(
+        self,
+        factory: SurfaceFactory,
+        faces: ArrayLike,
+        uv: ArrayLike,
+        *,
+        interpolation_mode: StencilMode | str = "vertex",
+        fvar_channel: int = 0,
+    ) -> None: ...
+    @property
+    def num_places(self) -> int: ...
+    def evaluate(self, points: ArrayLike) -> NDArray[np.float64]: ...
+    def evaluate_with_derivatives(
+        self,
+        points: ArrayLike,
+    ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]: ...
+
 class LevelTessellation:
     def __init__(
         self,

@@ -330,3 +330,53 @@ def test_rest_positions_of_any_type_and_layout():
                  wide.astype(np.float64)[:, :3], np.asfortranarray(CUBE_POSITIONS),
                  unaligned(CUBE_POSITIONS.astype(np.float64)), CUBE_POSITIONS.astype(">f8")):
         np.testing.assert_array_equal(refine(rest), expected)
+
+
+def test_places_of_surfaces(refiner):
+    factory = osh.SurfaceFactory(refiner)
+    uv = np.full((3, 2), 0.5)
+    bad = [
+        (([0, 6, 1], uv), IndexError, "^faces: row 1 is 6, not one of the 6 faces$"),
+        (([0, 1, -1], uv), IndexError, "^faces: row 2 is -1, not one of the 6 faces$"),
+        (([0.0, 1.0, 2.0], uv), TypeError, "faces: integers are needed, not float64"),
+        (([[0, 1, 2]], uv), ValueError, "faces: 1 dimension is needed"),
+        (([0, 1, 2**31], uv), ValueError, "faces: number 2 is 2147483648, which int32 does"),
+        ((None, uv), TypeError, "faces: an array is needed, not None"),
+        (([0, 1], uv), ValueError, r"uv: 2 elements are needed, the shape is \(3, 2\)"),
+        (([0, 1, 2], uv[:, :1]), ValueError,
+         r"uv: u and v of each place are needed, the shape is \(3, 1\)"),
+        (([0, 1, 2], [0.5] * 3), ValueError,
+         r"uv: u and v of each place are needed, the shape is \(3,\)"),
+        (([0, 1, 2], [[0, 0], [0, 0], [0, np.inf]]), ValueError, "uv: row 2 is not finite"),
+        (([0, 1, 2], [[0, 0], [np.nan, 0], [0, 0]]), ValueError, "uv: row 1 is not finite"),
+        (([0, 1, 2], [["a", "b"]] * 3), TypeError, "uv: numbers are needed"),
+    ]
+    for arguments, error, message in bad:
+        with pytest.raises(error, match=message):
+            osh.SurfacePlaces(factory, *arguments)
+    for mode, channel, error, message in (
+            ("sharp", 0, ValueError, "interpolation_mode: 'sharp' is none of 'vertex'"),
+            (None, 0, TypeError, "interpolation_mode: None is none of 'vertex'"),
+            ("face_varying", 1, IndexError, "fvar_channel: 1 is not one of the 1"),
+            ("face_varying", -1, IndexError, "fvar_channel: -1 is not one of the 1")):
+        with pytest.raises(error, match=message):
+            osh.SurfacePlaces(factory, [0, 1, 2], uv, interpolation_mode=mode,
+                              fvar_channel=channel)
+    with pytest.raises(TypeError):
+        osh.SurfacePlaces(None, [0], uv[:1])
+    holes = osh.SurfaceFactory(osh.TopologyRefiner(CUBE_FACES, holes=[4]))
+    with pytest.raises(osh.StatusError, match="hole") as raised:
+        osh.SurfacePlaces(holes, [0, 4, 1], uv)
+    assert raised.value.component == osh.ComponentType.FACE and raised.value.index == 4
+
+    places = osh.SurfacePlaces(factory, [5, 0, 5], uv)
+    for points, error, message in (
+            (CUBE_POSITIONS[1:], ValueError,
+             r"points: 8 elements are needed, the shape is \(7, 3\)"),
+            (np.zeros((8, 0)), ValueError, "points: elements of the shape"),
+            (np.zeros((8, 3, 1)), ValueError, "points: one or two dimensions"),
+            (np.zeros((8, 3), complex), TypeError, "points: numbers are needed, not complex128"),
+            (None, TypeError, "points: an array is needed, not None")):
+        for run in (places.evaluate, places.evaluate_with_derivatives):
+            with pytest.raises(error, match=message):
+                run(points)

@@ -125,37 +125,137 @@ def test_derivatives_are_those_of_the_points(factory):
         assert np.median(np.abs(difference - derivative)) < 1e-2
 
 
-def test_second_derivatives_are_differences_of_first_ones(factory):
+def find_smooth_places(coords):
+    """Those amid a quad and off its diagonals, where u and v have a bend."""
+    diagonals = np.abs(np.stack([coords[:, 0] - coords[:, 1], coords.sum(axis=1) - 1]))
+    return (np.abs(coords - 0.5) < 0.4).all(axis=1) & (diagonals > 0.06).all(axis=0)
+
+
+def test_second_derivatives_of_a_tessellation_are_differences_of_stencils(factory):
     surface = factory.vertex_surface(5)
-    inside = np.array([[0.3, 0.11], [0.62, 0.2], [0.81, 0.46]])
-    results = surface.evaluate_with_second_derivatives(inside, POSITIONS)
-    for result, first in zip(results, surface.evaluate_with_derivatives(inside, POSITIONS)):
-        np.testing.assert_array_equal(result, first)
-    step = 2e-4
-    for axis in (0, 1):
+    tessellation = osh.LevelTessellation(surface.face_size, 3)
+    results = surface.evaluate_with_second_derivatives(tessellation, POSITIONS)
+    for result, first in zip(results, surface.evaluate_with_derivatives(tessellation, POSITIONS)):
+        np.testing.assert_allclose(result, first, atol=1e-12)
+    control = POSITIONS[surface.control_points].astype(np.float64)
+    smooth = find_smooth_places(tessellation.coords)
+    coords = tessellation.coords[smooth]
+    assert len(coords) == 40
+    step = 1e-2
+    for axis, second in ((0, results[3]), (1, results[5])):
         shift = np.eye(2)[axis] * step
-        ends = [surface.evaluate_with_derivatives(inside + sign * shift, POSITIONS)
-                for sign in (-1, 1)]
-        for kind in (0, 1):
-            difference = (ends[1][1 + kind] - ends[0][1 + kind]) / (2 * step)
-            np.testing.assert_allclose(results[3 + kind + axis], difference, atol=0.03)
-    tessellation = osh.LevelTessellation(surface.face_size, 1)
-    of_tessellation = surface.evaluate_with_second_derivatives(tessellation, POSITIONS)
-    of_places = surface.evaluate_with_second_derivatives(tessellation.coords, POSITIONS)
-    for found, expected in zip(of_tessellation, of_places):
-        np.testing.assert_allclose(found, expected, atol=1e-6)
+        ends = [surface.evaluate_stencil(coords + sign * shift) @ control for sign in (-1, 1)]
+        difference = (ends[0] + ends[1] - 2 * surface.evaluate_stencil(coords) @ control) / step**2
+        np.testing.assert_allclose(second[smooth], difference, atol=0.02)
+
+
+def test_second_derivatives_of_places_are_near_those_of_the_surface(factory):
+    surface = factory.vertex_surface(5)
+    tessellation = osh.LevelTessellation(surface.face_size, 3)
+    coords = tessellation.coords
+    exact = surface.evaluate_with_second_derivatives(tessellation, POSITIONS)
+    places = surface.evaluate_with_second_derivatives(coords, POSITIONS)
+    for result, first in zip(places, surface.evaluate_with_derivatives(coords, POSITIONS)):
+        np.testing.assert_array_equal(result, first)
+    smooth = find_smooth_places(coords)
+    size = np.mean([np.abs(values[smooth]) for values in exact[3:]])
+    for found, expected in zip(places[3:], exact[3:]):
+        assert np.abs(found - expected)[smooth].mean() < 0.5 * size
 
 
 def test_stencils_are_weights_of_the_control_points(factory):
     surface = factory.vertex_surface(2)
+    control = POSITIONS[surface.control_points].astype(np.float64)
     weights = surface.evaluate_stencil(UV)
     assert weights.shape == (len(UV), len(surface.control_points))
     np.testing.assert_allclose(weights.sum(axis=1), 1, atol=1e-12)
-    np.testing.assert_allclose(weights @ POSITIONS[surface.control_points].astype(np.float64),
-                               surface.evaluate(UV, POSITIONS), atol=1e-12)
-    low, high = surface.bound(POSITIONS)
+    # They are exact as tessellations are; places are those of patches.
+    tessellation = osh.LevelTessellation(surface.face_size, 3)
+    np.testing.assert_allclose(surface.evaluate_stencil(tessellation.coords) @ control,
+                               surface.evaluate(tessellation, POSITIONS), atol=1e-6)
     points = surface.evaluate(UV, POSITIONS)
+    np.testing.assert_allclose(weights @ control, points, atol=3e-3)
+    low, high = surface.bound(POSITIONS)
     assert (low <= points.min(axis=0)).all() and (points.max(axis=0) <= high).all()
+
+
+def make_places(number=200):
+    """Places of faces in no order, many in one face."""
+    random = np.random.default_rng(3)
+    return random.integers(0, 20, number), random.random((number, 2))
+
+
+def test_places_of_many_faces_are_those_of_surfaces(factory):
+    faces, uv = make_places()
+    places = osh.SurfacePlaces(factory, faces, uv)
+    assert places.num_places == len(faces)
+    values = np.random.default_rng(4).random((len(POSITIONS), 5))
+    for points in (POSITIONS.astype(np.float64), values, values[:, 1]):
+        results = places.evaluate_with_derivatives(points)
+        assert [r.shape for r in results] == 3 * [(len(faces),) + (points.shape[1:] or (1,))]
+        assert all(r.dtype == np.float64 for r in results)
+        np.testing.assert_array_equal(places.evaluate(points), results[0])
+        for i in range(0, len(faces), 7):
+            expected = factory.vertex_surface(faces[i]).evaluate_with_derivatives(uv[i:i + 1],
+                                                                                  points)
+            for result, one in zip(results, expected):
+                np.testing.assert_array_equal(result[i:i + 1], one)
+    with osh.ExecutorScope(None, num_threads=1):
+        np.testing.assert_array_equal(places.evaluate(values[:, 1]), results[0])
+
+
+def test_places_take_points_of_any_type_and_layout(factory):
+    faces, uv = make_places(20)
+    wide = np.random.default_rng(5).random((len(POSITIONS), 6)).astype(np.float32)
+    places = osh.SurfacePlaces(factory, faces, uv)
+    expected = places.evaluate(wide[:, 1:4].astype(np.float64))
+    for points in (wide[:, 1:4], np.asfortranarray(wide[:, 1:4]), wide[:, 1:4].tolist(),
+                   wide.astype(np.float64)[:, 1:4], wide.astype(">f8")[:, 1:4]):
+        np.testing.assert_array_equal(places.evaluate(points), expected)
+    for other_faces in (faces.tolist(), faces.astype(">i8"), faces.astype(np.uint8)):
+        for other_uv in (uv.tolist(), np.asfortranarray(uv), uv.astype(">f8")):
+            other = osh.SurfacePlaces(factory, other_faces, other_uv)
+            np.testing.assert_array_equal(other.evaluate(wide[:, 1:4]), expected)
+    none = osh.SurfacePlaces(factory, [], np.zeros((0, 2)))
+    assert none.num_places == 0 and none.evaluate(POSITIONS).shape == (0, 3)
+
+
+def test_places_of_other_data_outlive_the_factory():
+    values = np.arange(4 * len(FACES))
+    factory = osh.SurfaceFactory(
+        make_refiner(fvar_channels=[values], fvar_linear_interpolation="all"))
+    faces, uv = make_places(30)
+    data = np.random.default_rng(1).random((len(values), 2))
+    of_channel = factory.face_varying_surface(faces[0]).evaluate(uv[:1], data)
+    varying = factory.varying_surface(faces[0]).evaluate(uv[:1], POSITIONS)
+    channel_places = osh.SurfacePlaces(factory, faces, uv, interpolation_mode="face_varying")
+    varying_places = osh.SurfacePlaces(factory, faces, uv, interpolation_mode="varying")
+    with pytest.raises(IndexError, match="fvar_channel: 1 is not one of the 1"):
+        osh.SurfacePlaces(factory, faces, uv, interpolation_mode="face_varying", fvar_channel=1)
+    del factory
+    np.testing.assert_array_equal(channel_places.evaluate(data)[:1], of_channel)
+    np.testing.assert_array_equal(varying_places.evaluate(POSITIONS)[:1], varying)
+    # Channels have their own number of points.
+    with pytest.raises(ValueError, match=f"points: {len(values)} elements are needed"):
+        channel_places.evaluate(POSITIONS)
+    with pytest.raises(ValueError, match=f"points: {len(POSITIONS)} elements are needed"):
+        varying_places.evaluate(data)
+
+
+def test_places_behind_a_first_step_are_in_faces_of_level_1():
+    refiner = make_refiner(first_step="truncate")
+    refiner.refine_uniform(1, full_topology_in_last_level=True)
+    points = osh.RefinementEvaluator(refiner).evaluate(POSITIONS)
+    factory = osh.SurfaceFactory(refiner)
+    last = refiner.get_level(1).num_faces - 1
+    places = osh.SurfacePlaces(factory, [last], [[0.5, 0.3]])
+    np.testing.assert_array_equal(places.evaluate(points),
+                                  factory.vertex_surface(last).evaluate([[0.5, 0.3]], points))
+    with pytest.raises(ValueError, match="points"):
+        places.evaluate(POSITIONS)
+    refiner.refine_uniform(2)
+    with pytest.raises(osh.StatusError, match="refined again"):
+        osh.SurfacePlaces(factory, [last], [[0.5, 0.3]])
 
 
 def test_neighbours_share_points_to_the_bit(factory):

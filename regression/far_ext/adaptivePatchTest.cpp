@@ -226,6 +226,32 @@ TEST(AdaptivePatches, KeepTheirTolerance) {
     }
 }
 
+// What is near the eye is refined more, by the same distances otherwise.
+TEST(AdaptivePatches, AreFinerNearTheEye) {
+    Shape const &shape = GetShape("cube");
+    ReferenceValues const positions = GetPositions(shape);
+    double const size = GetSize(positions);
+    auto const refiner = CreateRefiner(shape, ReferenceMask::Smooth, 6, makeOptions());
+    std::vector<float> const control(shape.positions.begin(), shape.positions.end());
+    int numPatches[2][2] = {}; // by side of the eye, and by side of the patch
+    for (int side = 0; side < 2; ++side) {
+        float const eye[3] = {0, 0, float(side == 0 ? -1.1 * size : 1.1 * size)};
+        PatchTableFactory::Options options(4);
+        options.minIsolationLevel = 1;
+        options.tolerance = 1e-3;
+        options.positions = control.data();
+        options.eye = eye;
+        TablePatches const patches(*refiner, options, positions);
+        ASSERT_TRUE(patches.IsValid());
+        ASSERT_NO_FATAL_FAILURE(expectToMeet(patches, size, true));
+        for (int patch = 0; patch < patches.GetNum(); ++patch) {
+            ++numPatches[side][patches.Evaluate(patch, 0.5, 0.5).p[2] > 0 ? 1 : 0];
+        }
+    }
+    EXPECT_GT(numPatches[0][0], 1.3 * numPatches[1][0]);
+    EXPECT_GT(numPatches[1][1], 1.3 * numPatches[0][1]);
+}
+
 TEST(AdaptivePatches, RefuseWhatIsWrong) {
     auto const refiner = CreateRefiner(GetShape("cube"), ReferenceMask::Smooth, 3, makeOptions());
     auto const expect = [&](PatchTableFactory::Options const &options, std::string const &message) {
@@ -244,6 +270,10 @@ TEST(AdaptivePatches, RefuseWhatIsWrong) {
     expect(options, "without positions");
     options.tolerance = -1;
     expect(options, "negative");
+    float const eye[3] = {0, 0, 0};
+    options.tolerance = 0;
+    options.eye = eye;
+    expect(options, "eye");
 }
 
 } // namespace OpenSubdivHex::Regression::adaptivePatchTest

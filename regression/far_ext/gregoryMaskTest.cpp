@@ -58,7 +58,7 @@ TEST(GregoryMask, PointsAreAffine) {
     AddCurvePoints(shape, mask);
     AddInnerPoints(shape, neighbors, 1, false, mask);
     AddInnerPoints(shape, neighbors, -1, true, mask);
-    AddKitePoints(shape, neighbors, 1, 5, 2, mask);
+    AddKitePoints(shape, neighbors, {{0.9, 1.1}, 0.2}, 1, 5, 2, mask);
     ASSERT_EQ(mask.points.size(), 2u + 2u + 2u + 15u);
     for (GregoryMask::Point const &point : mask.points) {
         double sum = 0;

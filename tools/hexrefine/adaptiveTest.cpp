@@ -107,7 +107,7 @@ TEST_F(HexrefineAdaptive, WarnsOfFacesThatCannotBeReadAgain) {
     std::string const input = makeFile("polygon.obj", text + face + "\n");
     std::string const arguments = input + " --adaptive --boundary edge-only --mask smooth -o " +
                                   getPath("out.ply") + " --pixel-error ";
-    Result const result = run(arguments + "1e-5");
+    Result const result = run(arguments + "1e-8 --max-level 10");
     EXPECT_EQ(result.status, 0);
     EXPECT_NE(result.error.find("1 face of the output with more than 65535 vertices, which "
                                 "hexrefine does not read again, the first in face 0 with "),
@@ -424,16 +424,33 @@ TEST_F(HexrefineAdaptive, BeginsBehindAFirstStep) {
 
 // Creases and borders, too, which have points of their own.
 TEST_F(HexrefineAdaptive, CullsSharpEdges) {
-    std::string const behind = " --camera 5,0,0,10,0,0";
-    std::string const cube = CUBE_FILE;
-    EXPECT_GT(refine(cube, behind, "all.ply").GetNumVertices(), 1000);
-    Mesh const culled = refine(cube, behind + " --cull", "culled.ply");
-    EXPECT_EQ(culled.GetNumVertices(), 8);
-    EXPECT_EQ(culled.GetNumFaces(), 6);
-    // Half of the cube is in the picture.
-    std::string const beside = " --camera 6,0,0,6,6,4 --fov 90";
-    Mesh const half = refine(cube, beside + " --cull", "half.ply");
-    EXPECT_LT(half.GetNumVertices(), refine(cube, beside, "all.ply").GetNumVertices());
+    constexpr int kNumSides = 8; // of a prism whose ends are bent
+    std::string text;
+    std::string ends[2] = {"f", "f"};
+    for (int i = 0; i < kNumSides; ++i) {
+        double const angle = 2 * std::acos(-1.0) * i / kNumSides;
+        for (double const z : {-1.0, 1.0}) {
+            text += "v " + std::to_string(std::cos(angle)) + " " + std::to_string(std::sin(angle)) +
+                    " " + std::to_string(z + 0.5 * std::sin(2 * angle)) + "\n";
+        }
+        ends[1] += " " + std::to_string(2 * i + 2);
+        ends[0].insert(1, " " + std::to_string(2 * i + 1));
+    }
+    for (int i = 0; i < kNumSides; ++i) {
+        int const next = (i + 1) % kNumSides;
+        text += "f " + std::to_string(2 * i + 1) + " " + std::to_string(2 * next + 1) + " " +
+                std::to_string(2 * next + 2) + " " + std::to_string(2 * i + 2) + "\n";
+    }
+    std::string const prism = makeFile("prism.obj", text + ends[0] + "\n" + ends[1] + "\n");
+    std::string const behind = " --crease-angle 30 --camera 5,0,0,10,0,0";
+    EXPECT_GT(refine(prism, behind, "all.ply").GetNumVertices(), 100);
+    Mesh const culled = refine(prism, behind + " --cull", "culled.ply");
+    EXPECT_EQ(culled.GetNumVertices(), 2 * kNumSides);
+    EXPECT_EQ(culled.GetNumFaces(), kNumSides + 2);
+    // Half of the prism is in the picture.
+    std::string const beside = " --crease-angle 30 --camera 6,0,0,6,6,4 --fov 90";
+    Mesh const half = refine(prism, beside + " --cull", "half.ply");
+    EXPECT_LT(half.GetNumVertices(), refine(prism, beside, "all.ply").GetNumVertices());
     ASSERT_NO_FATAL_FAILURE(expectClosed(half));
 }
 
