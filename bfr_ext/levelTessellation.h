@@ -21,8 +21,9 @@ struct PatchPlan;
 /// \brief A base face cut into facets, as Bfr::Tessellation: places in its parameter plane, at which a
 /// Surface is evaluated, and the facets between them.
 ///
-/// In place of Bfr's rates there are levels of refinement; for rates, a Surface takes a Bfr::Tessellation.  The places are those of vertices, and the
-/// facets are cells: the F-face and the halves of hexagons that the refined levels have in the face.
+/// In place of Bfr's rates there are levels of refinement; a Surface takes a Bfr::Tessellation, with rates, too.
+/// The places are those of vertices, and the facets are cells: the F-face and the halves of hexagons that the
+/// refined levels have in the face.
 /// At level d an edge is a polyline of 1, 1, 3, 5, 11, 21, 43 ... segments (d = 0, 1, 2 ...), each of
 /// which has the points of the one before, too.
 ///

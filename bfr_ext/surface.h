@@ -245,10 +245,10 @@ public:
     /// with the exceptions said above.  A place of an edge has the same point at whatever rates, levels and
     /// polylines have it: 1/3 and 2/6, 1/4 and the first one of level 2.
     ///
-    /// The weights of a type of faces are found when it is first evaluated with some inner rates, which takes some
-    /// ten microseconds a place, and kept in the cache: for each place inside a number for each control point,
-    /// and two more where derivatives are asked for.  Those of more than 4,096 places inside, and of rates above
-    /// 1,024 on an edge, are found each time.
+    /// The weights of places are found when a type of faces is first evaluated with some inner rates, or with some
+    /// rate on an edge, which takes some ten microseconds a place.  They are kept in the cache, some twenty to fifty
+    /// for a place inside, and twice as many more for its derivatives.  Those of more than 4,096 places inside, and of
+    /// rates above 1,024 on an edge, are found each time.
     void Evaluate(OpenSubdiv::Bfr::Tessellation const &tessellation, REAL const controlPoints[],
                   PointDescriptor const &pointDesc, REAL p[],
                   PointDescriptor const &resultDesc) const;

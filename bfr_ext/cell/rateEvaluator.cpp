@@ -311,28 +311,24 @@ template <typename REAL>
 typename RateEvaluator<REAL>::Matrices
 RateEvaluator<REAL>::makeHalf(Source const &source, std::vector<BfrPlace> const &places,
                               HalfWithEdge const &half, bool isReversed, int faceSize, int rate) {
-    RingCell const &longEdge = *half.longEdge;
-    bool const isOfStep = source.cell->IsInner();
     Matrices result;
     std::vector<BfrPlace> const inside = selectPlaces(places, source.child, faceSize, result.runs);
-    std::size_t const numPlaces = inside.size() + std::size_t(rate) - 1;
-    PlaceMatrix<REAL> &matrix =
-        result.matrices.emplace_back(numPlaces, half.places.GetColumns().size());
-    std::vector<double> ordered;
-    CellStencil stencil(source.type, isOfStep ? StencilOf::Step : StencilOf::Points);
-    for (std::size_t row = 0; row < inside.size(); ++row) {
-        stencil.Find(inside[row].point, false);
-        source.cell->GetPlaces().Order(stencil.GetWeights(), ordered);
-        matrix.Set(row, half.places.Spread(source.cell->GetPlaces(), ordered));
+    PlaceMatrix<REAL> &matrix = result.matrices.emplace_back(inside.size() + std::size_t(rate) - 1,
+                                                             half.places.GetColumns().size());
+    std::size_t row = 0;
+    std::vector<Rows> const rows = findRows(source, inside, false);
+    for (std::vector<double> const &weights : rows[0]) {
+        matrix.Set(row++, half.places.Spread(source.cell->GetPlaces(), weights));
     }
-    BorderStencil border;
+    RingCell const &longEdge = *half.longEdge;
+    std::vector<double> ordered;
+    BorderStencil stencil;
     for (int i = 1; i < rate; ++i) {
-        int const row = int(inside.size()) + i - 1;
-        border.Find(longEdge.GetType(), double(isReversed ? rate - i : i) / rate,
-                    longEdge.IsInner() ? StencilOf::Step : StencilOf::Points);
-        longEdge.GetPlaces().Order(border.GetWeights(), ordered);
-        matrix.Set(std::size_t(row), half.places.Spread(longEdge.GetPlaces(), ordered));
-        addToRuns(row, i - 1, result.runs);
+        stencil.Find(longEdge.GetType(), double(isReversed ? rate - i : i) / rate,
+                     longEdge.IsInner() ? StencilOf::Step : StencilOf::Points);
+        longEdge.GetPlaces().Order(stencil.GetWeights(), ordered);
+        addToRuns(int(row), i - 1, result.runs);
+        matrix.Set(row++, half.places.Spread(longEdge.GetPlaces(), ordered));
     }
     return result;
 }
@@ -341,26 +337,36 @@ template <typename REAL>
 typename RateEvaluator<REAL>::Matrices
 RateEvaluator<REAL>::makeMatrices(Source const &source, std::vector<BfrPlace> const &places,
                                   bool hasDerivatives) {
-    bool const isOfStep = source.cell && source.cell->IsInner();
-    std::size_t const numColumns =
-        source.cell ? source.cell->GetColumns().size() : std::size_t(source.type.GetNumPoints());
-    CellStencil stencil(source.type, isOfStep ? StencilOf::Step : StencilOf::Points);
-    std::vector<double> ordered;
-    auto const order = [&](std::vector<double> const &weights) -> std::vector<double> const & {
-        if (!source.cell) {
-            return weights;
-        }
-        source.cell->GetPlaces().Order(weights, ordered);
-        return ordered;
-    };
     Matrices result;
-    result.matrices.assign(hasDerivatives ? 2 : 1, PlaceMatrix<REAL>(places.size(), numColumns));
+    for (Rows const &rows : findRows(source, places, hasDerivatives)) {
+        PlaceMatrix<REAL> &matrix =
+            result.matrices.emplace_back(rows.size(), rows.empty() ? 0 : rows[0].size());
+        for (std::size_t row = 0; row < rows.size(); ++row) {
+            matrix.Set(row, rows[row]);
+        }
+    }
+    return result;
+}
+
+// By place, the weights of what the source has: of the point, or of the derivative by Bfr's u, and of that by its v.
+template <typename REAL>
+std::vector<typename RateEvaluator<REAL>::Rows>
+RateEvaluator<REAL>::findRows(Source const &source, std::vector<BfrPlace> const &places,
+                              bool hasDerivatives) {
+    bool const isOfStep = source.cell && source.cell->IsInner();
+    CellStencil stencil(source.type, isOfStep ? StencilOf::Step : StencilOf::Points);
+    std::vector<Rows> result(hasDerivatives ? 2 : 1);
+    auto const add = [&](std::size_t kind, std::vector<double> const &weights) {
+        std::vector<double> &row = result[kind].emplace_back(weights);
+        if (source.cell) {
+            source.cell->GetPlaces().Order(weights, row);
+        }
+    };
     std::vector<double> derivative;
-    for (std::size_t row = 0; row < places.size(); ++row) {
-        BfrPlace const &place = places[row];
+    for (BfrPlace const &place : places) {
         stencil.Find(place.point, hasDerivatives);
         if (!hasDerivatives) {
-            result.matrices[0].Set(row, order(stencil.GetWeights()));
+            add(0, stencil.GetWeights());
             continue;
         }
         std::vector<double> const *along[2] = {&stencil.GetDuWeights(), &stencil.GetDvWeights()};
@@ -378,7 +384,7 @@ RateEvaluator<REAL>::makeMatrices(Source const &source, std::vector<BfrPlace> co
                 derivative[i] =
                     place.toOwn[0][k] * (*along[0])[i] + place.toOwn[1][k] * (*along[1])[i];
             }
-            result.matrices[k].Set(row, order(derivative));
+            add(k, derivative);
         }
     }
     return result;

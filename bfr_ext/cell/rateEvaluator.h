@@ -73,6 +73,10 @@ private:
         std::vector<PlaceRun> runs; ///< none: all places in turn
     };
 
+    using Rows = std::vector<std::vector<double>>;
+
+    static std::vector<Rows> findRows(Source const &source, std::vector<BfrPlace> const &places,
+                                      bool hasDerivatives);
     static Matrices makeMatrices(Source const &source, std::vector<BfrPlace> const &places,
                                  bool hasDerivatives);
     static Matrices makeInside(Source const &source, std::vector<BfrPlace> const &places,

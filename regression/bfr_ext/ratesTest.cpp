@@ -252,33 +252,46 @@ TEST(Rates, NeighboursShareTheirPointsAtEachRate) {
     }
 }
 
-// 1 - i/n is rounded where n is no power of 2; a place does not depend on n.
+// 1 - i/n is rounded where n is no power of 2; a place does not depend on n, nor on the other rates.
 TEST(Rates, PlacesOfEdgesDoNotDependOnRates) {
-    Shape const shape = MakeChamfered("chamfered", MakeTorus(7, 6, TorusFaces::Quads));
-    auto const refiner = CreateRefiner(shape, ReferenceMask::Smooth, 0, Sdc::Options());
-    SurfaceSet<double> const surfaces(*refiner, shape.positions);
+    constexpr int kMaxFaces = 60;
     auto const expectSame = [](double const *a, double const *b) {
         EXPECT_EQ(ToVector(a), ToVector(b));
     };
-    for (int face = 0; face < 60; ++face) {
-        Surface<double> const &surface = surfaces[face];
-        std::vector<double> const control = gather(surface, shape.positions);
-        auto const evaluateAtRate = [&](int rate) {
-            return evaluate(surface, control,
-                            Bfr::Tessellation(surface.GetParameterization().GetBfr(), rate));
-        };
-        std::vector<double> const thirds = evaluateAtRate(3);
-        std::vector<double> const ninths = evaluateAtRate(9);
-        std::vector<double> const quarters = evaluateAtRate(4);
-        BfrExt::LevelTessellation const ofLevel(surface.GetParameterization(), 2);
-        std::vector<double> ofLevelPoints(3 * std::size_t(ofLevel.GetNumCoords()));
-        surface.Evaluate(ofLevel, control.data(), 3, ofLevelPoints.data(), 3);
-        for (std::size_t edge = 0; edge < std::size_t(surface.GetFaceSize()); ++edge) {
-            expectSame(&thirds[3 * (3 * edge + 1)], &ninths[3 * (9 * edge + 3)]);
-            expectSame(&thirds[3 * (3 * edge + 2)], &ninths[3 * (9 * edge + 6)]);
-            expectSame(&quarters[3 * (4 * edge)], &ofLevelPoints[3 * (3 * edge)]);
-            expectSame(&quarters[3 * (4 * edge + 1)], &ofLevelPoints[3 * (3 * edge + 1)]);
-            expectSame(&quarters[3 * (4 * edge + 3)], &ofLevelPoints[3 * (3 * edge + 2)]);
+    for (Shape const &shape :
+         {MakeChamfered("chamfered", MakeTorus(7, 6, TorusFaces::Quads)),
+          MakeTorus(9, 7, TorusFaces::IrregularTriangles), MakeTorus(7, 6, TorusFaces::Quads)}) {
+        SCOPED_TRACE(shape.name);
+        auto const refiner = CreateRefiner(shape, ReferenceMask::Smooth, 0, Sdc::Options());
+        SurfaceSet<double> const surfaces(*refiner, shape.positions);
+        for (int face = 0; face < std::min(shape.GetNumFaces(), kMaxFaces); ++face) {
+            Surface<double> const &surface = surfaces[face];
+            std::vector<double> const control = gather(surface, shape.positions);
+            Bfr::Parameterization const bfr = surface.GetParameterization().GetBfr();
+            auto const evaluateAtRate = [&](int rate) {
+                return evaluate(surface, control, {bfr, rate});
+            };
+            std::vector<double> const thirds = evaluateAtRate(3);
+            std::vector<double> const ninths = evaluateAtRate(9);
+            std::vector<double> const quarters = evaluateAtRate(4);
+            auto const size = std::size_t(surface.GetFaceSize());
+            std::vector<int> rates(size + 1, 9);
+            rates[size] = 5;
+            std::vector<double> const others =
+                evaluate(surface, control, {bfr, int(rates.size()), rates.data()});
+            BfrExt::LevelTessellation const ofLevel(surface.GetParameterization(), 2);
+            std::vector<double> ofLevelPoints(3 * std::size_t(ofLevel.GetNumCoords()));
+            surface.Evaluate(ofLevel, control.data(), 3, ofLevelPoints.data(), 3);
+            for (std::size_t edge = 0; edge < size; ++edge) {
+                expectSame(&thirds[3 * (3 * edge + 1)], &ninths[3 * (9 * edge + 3)]);
+                expectSame(&thirds[3 * (3 * edge + 2)], &ninths[3 * (9 * edge + 6)]);
+                expectSame(&quarters[3 * (4 * edge)], &ofLevelPoints[3 * (3 * edge)]);
+                expectSame(&quarters[3 * (4 * edge + 1)], &ofLevelPoints[3 * (3 * edge + 1)]);
+                expectSame(&quarters[3 * (4 * edge + 3)], &ofLevelPoints[3 * (3 * edge + 2)]);
+            }
+            for (std::size_t place = 0; place < 9 * size; ++place) {
+                expectSame(&ninths[3 * place], &others[3 * place]);
+            }
         }
     }
 }
