@@ -82,10 +82,7 @@ void addFileOptions(CLI::App &app, Arguments *arguments) {
            "texture coordinates, normals, colours, objects, groups and materials (a hexagon "
            "that a seam crosses is written as two quads), .ply all numbers of vertices and "
            "faces, .off colours. Holes are left out")
-        ->check([](std::string const &path) {
-            return FindMeshFormat(path) ? std::string()
-                                        : "'" + path + "' is not a " + kMeshExtensions + " file";
-        })
+        ->check(MakeMeshFile())
         ->type_name("FILE");
 }
 

@@ -3,6 +3,7 @@
 #define OPENSUBDIVHEX_TOOLS_PROGRAM_H
 
 #include "fileError.h"
+#include "meshFormat.h"
 #include "meshReader.h"
 #include "meshText.h"
 
@@ -115,6 +116,16 @@ inline CLI::Validator MakeOpenRange(float least, float most, std::string const &
 /// Checks that a word is a float above 0.
 inline CLI::Validator MakePositive() {
     return MakeOpenRange(0, std::numeric_limits<float>::infinity(), "a number above 0");
+}
+
+/// Checks that a word is the name of a file that WriteMesh() writes.
+inline CLI::Validator MakeMeshFile() {
+    return {[](std::string const &word) {
+                return FindMeshFormat(word)
+                           ? std::string()
+                           : "'" + word + "' is not a " + kMeshExtensions + " file";
+            },
+            ""};
 }
 
 /// Checks that a word is the name of a .png file.
