@@ -58,9 +58,9 @@ struct PatchSite {
     std::uint64_t GetKey() const;
 };
 
-/// \brief All constants of a mask: for FaceMask::Smooth those that a descent found, from the errors of a torus, of
-/// spheres of quads and of truncated meshes (regression/analysis/patchErrors prints some of these); else a rule of a few
-/// numbers.
+/// \brief All constants of a mask: for FaceMask::Smooth those of the first levels that
+/// regression/analysis/searchPatchConstants finds, from the errors of some meshes of quads and truncated ones; else a
+/// rule of a few numbers.
 class PatchConstants {
 public:
     explicit PatchConstants(FaceMask mask);

@@ -4,10 +4,10 @@
 //
 // For each number of steps behind the surface level, the constants of all sites that some meshes have are those
 // with the least sum, over the meshes, of the mean squares of distances and of angles between normals, each in
-// terms of what it is by the limit's derivatives alone.  A small share is for how far constants are from their
-// defaults, so that those that matter little stay.  The method is Levenberg's and Marquardt's, with differences for
-// derivatives.  None of the meshes is one of those that patchErrors prints, but for a torus.  Takes half an hour;
-// the argument is a number of steps, or none for all.
+// terms of what it is by the defaults.  A small share is for how far constants are from these, so that those that
+// matter little stay.  The method is Levenberg's and Marquardt's, with differences for derivatives.  None of the
+// meshes is one of those that patchErrors prints.  Takes some minutes; the argument is a number of steps, or none
+// for all.
 #include "patchSamples.h"
 
 #include "far_ext/patch/patchBuilder.h"
@@ -40,7 +40,7 @@ using FarExt::internal::PatchSite;
 
 namespace {
 
-constexpr int kMaxSteps = PatchSite::kMaxSteps;
+constexpr int kMaxSteps = 2; // later ones have the defaults
 constexpr std::size_t kMaxNumSamples = 2500;
 constexpr double kDegrees = 180 / 3.14159265358979323846; // in a radian
 
@@ -179,7 +179,7 @@ public:
         measure(constants);
         return sites;
     }
-    // Numbers whose squares sum to 2, times the share, with the limit's derivatives alone.
+    // Numbers whose squares sum to 2, times the share, with the defaults.
     Eigen::VectorXd Measure(PatchConstants const &constants) const {
         std::vector<PatchSamples::Error> const errors = measure(constants);
         Eigen::VectorXd result(3 * Eigen::Index(errors.size()));
@@ -235,8 +235,8 @@ std::deque<Fit> makeFits(int steps) {
     auto const truncate = FarExt::FirstStep::Truncate;
     // Later levels have enough patches of few faces.
     int const size = steps < 2 ? 2 : 1;
-    int const numAround = steps < 3 ? 10 * size : 7;
-    int const numAcross = steps < 3 ? 6 * size : 4;
+    int const numAround = 10 * size;
+    int const numAcross = 6 * size;
     auto const refine = [&](Shape shape) {
         for (int i = 1; i < size; ++i) {
             shape = cutIntoQuads(shape);

@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // Patches: places with both first derivatives, by Osd's evaluator and by this one on the same table, nanoseconds per
-// place, with the places of a patch together and in random order.
+// place, with the places of a patch together and in random order; and tables, against Far's adaptive ones of
+// Catmull-Clark with the stencils of their points, nanoseconds per patch.
 #include "evaluation.h"
 
 #include "far_ext/patchTableFactory.h"
 
+#include <opensubdiv/far/patchTableFactory.h>
+#include <opensubdiv/far/stencilTableFactory.h>
 #include <opensubdiv/osd/cpuPatchTable.h>
 
 #include <algorithm>
@@ -96,6 +99,57 @@ Contest makeEvaluationContest(BenchMesh const &mesh, bool isRandom) {
     return contest;
 }
 
+/// A table of patches, and with Far's the stencils of their points in terms of control vertices.
+struct MadePatches {
+    std::unique_ptr<Far::PatchTable const> table;
+    std::unique_ptr<Far::StencilTable const> points;
+};
+
+MadePatches makeFarPatches(Far::TopologyRefiner const &refiner,
+                           Far::PatchTableFactory::Options const &options) {
+    MadePatches made;
+    made.table.reset(Far::PatchTableFactory::Create(refiner, options));
+    std::unique_ptr<Far::StencilTable const> const levels(
+        Far::StencilTableFactory::Create(refiner));
+    made.points.reset(Far::StencilTableFactory::AppendLocalPointStencilTable(
+        refiner, levels.get(), made.table->GetLocalPointStencilTable()));
+    return made;
+}
+
+/// A table for each turn.
+template <typename MAKE>
+Contestant makeTableContestant(std::string const &name, MAKE make) {
+    auto const made = std::make_shared<MadePatches>();
+    Contestant contestant;
+    contestant.name = name;
+    contestant.work = [=] { *made = make(); };
+    contestant.validate = [=] {
+        Require(made->table != nullptr, name + ": no patches");
+        return double(made->table->GetNumPatchesTotal());
+    };
+    contestant.release = [=] { *made = MadePatches(); };
+    return contestant;
+}
+
+/// Far's patches are fewer and, where the mesh is regular, need no points: no row promises a ratio.
+Contest makeTableContest(BenchMesh const &mesh) {
+    std::shared_ptr<FarExt::TopologyRefiner> const refiner = MakeFullyRefined(mesh);
+    std::shared_ptr<Far::TopologyRefiner> const farRefiner = MakeFarBase(mesh);
+    Far::PatchTableFactory::Options options(unsigned(mesh.level) - 1);
+    options.SetEndCapType(Far::PatchTableFactory::Options::ENDCAP_GREGORY_BASIS);
+    farRefiner->RefineAdaptive(options.GetRefineAdaptiveOptions());
+    Contest contest;
+    contest.contestants = {
+        makeTableContestant(
+            "FarExt::PatchTableFactory",
+            [=]() -> MadePatches {
+                return {FarExt::PatchTableFactory::Create(*refiner, mesh.level - 1), nullptr};
+            }),
+        makeTableContestant("Far::PatchTableFactory",
+                            [=] { return makeFarPatches(*farRefiner, options); })};
+    return contest;
+}
+
 } // namespace
 
 void AddPatchBenchmarks(Suite &suite) {
@@ -106,6 +160,8 @@ void AddPatchBenchmarks(Suite &suite) {
                          [=] { return makeEvaluationContest(mesh, false); });
         suite.AddContest({"patches, in random order", "place", mesh, Memory::Resident},
                          [=] { return makeEvaluationContest(mesh, true); });
+        suite.AddContest({"patches, made", "patch", mesh, Memory::Default},
+                         [=] { return makeTableContest(mesh); });
     }
 }
 
