@@ -29,7 +29,6 @@ internal::PlainFaceType const *internal::BaseType::GetPlain() const {
 namespace {
 
 using internal::CellStencil;
-using internal::CellType;
 
 // Matrices of finer levels leave the cache.
 constexpr int kLastLevelOfMatrices = 6;
