@@ -13,7 +13,7 @@ namespace {
 constexpr std::size_t kBlockSize = 8 * PlaceMatrix<float>::kMaxWidth;
 static_assert(kBlockSize % PlaceMatrix<double>::kMaxWidth == 0);
 // Those of more places are not kept: matrices of a quad with a rate of 64 take half a megabyte.
-constexpr std::size_t kMaxKeptPlaces = 64 * 64;
+constexpr std::size_t kMaxKeptPlaces = 4096;
 
 // Calls function(matrices, begin) for blocks of matrices, which make(begin, end) makes of places [begin, end).
 template <typename MATRICES, std::size_t SIZE, typename MAKE, typename FUNCTION>
@@ -44,15 +44,15 @@ void addToRuns(int row, int place, std::vector<PlaceRun> &runs) {
     }
 }
 
-// Those places of a face that a child of it has, and which of all they are.
-std::vector<BfrPlace> selectPlaces(std::vector<BfrPlace> const &places, std::size_t child,
-                                   int faceSize, std::vector<PlaceRun> &runs) {
+// Those places of a face that a child of it has, and which of all they are, from the first one's number on.
+std::vector<BfrPlace> selectPlaces(std::vector<BfrPlace> const &places, int first,
+                                   std::size_t child, int faceSize, std::vector<PlaceRun> &runs) {
     std::vector<BfrPlace> result;
     for (std::size_t i = 0; i < places.size(); ++i) {
         BasePoint const &point = places[i].point;
         CellStep const step = FindCellStep(true, point.sector, point.coords);
         if (step.child == child) {
-            addToRuns(int(result.size()), int(i), runs);
+            addToRuns(int(result.size()), first + int(i), runs);
             result.push_back(MoveToChild(places[i], step, faceSize));
         }
     }
@@ -218,21 +218,20 @@ void RateEvaluator<REAL>::evaluateInside(Source const &source) {
 }
 
 template <typename REAL>
-std::array<int, 6> RateEvaluator<REAL>::getKey(Source const &source) const {
+int RateEvaluator<REAL>::getFaceKey() const {
     Bfr::Parameterization const parameterization = _tessellation.GetParameterization();
-    return {parameterization.GetFaceSize(),
-            int(parameterization.GetType()),
-            int(_inner.GetSize()),
-            _inner.GetRate(0),
-            _inner.GetRate(1),
-            int(source.child)};
+    constexpr int kNumTypes = 3;
+    return kNumTypes * parameterization.GetFaceSize() + int(parameterization.GetType());
 }
 
 template <typename REAL>
 void RateEvaluator<REAL>::evaluateInside(Source const &source, PatternOf of) {
     bool const areDerivatives = of == PatternOf::RateDerivatives;
     forEachBlock<Matrices>(
-        source.GetPatterns(), PatternTable::GetKind<REAL>(of), getKey(source), _inner.GetSize(),
+        source.GetPatterns(), PatternTable::GetKind<REAL>(of),
+        std::array<int, 5>{getFaceKey(), int(source.child), int(_inner.GetSize()),
+                           _inner.GetRate(0), _inner.GetRate(1)},
+        _inner.GetSize(),
         [&](std::size_t begin, std::size_t end) {
             return makeInside(source, _inner.Find(begin, end), _tessellation.GetFaceSize(),
                               areDerivatives);
@@ -250,7 +249,7 @@ void RateEvaluator<REAL>::evaluateDerivativesOnEdge(Source const &source, int ed
     int const size = parameterization.GetFaceSize();
     forEachBlock<Matrices>(
         source.GetPatterns(), PatternTable::GetKind<REAL>(PatternOf::RateDerivativesOnEdge),
-        std::array<int, 4>{size, int(parameterization.GetType()), edge, rate}, std::size_t(rate),
+        std::array<int, 3>{getFaceKey(), edge, rate}, std::size_t(rate),
         [&](std::size_t begin, std::size_t end) {
             std::vector<BfrPlace> places;
             for (auto i = int(begin); i < int(end); ++i) {
@@ -267,28 +266,16 @@ void RateEvaluator<REAL>::evaluateDerivativesOnEdge(Source const &source, int ed
         });
 }
 
-// The places inside of a half cell and of the edge beside it.
+// The places inside of a half cell and of the edge beside it, where all rates are the same: so these tell which places of
+// the face they are.
 template <typename REAL>
 void RateEvaluator<REAL>::evaluateHalf(Source const &source, HalfWithEdge const &half,
                                        bool isReversed, int rate, int first) {
-    // The half cell of an edge belongs to a direction of it.
-    std::array<int, 6> const key = getKey(source);
+    int const key[] = {getFaceKey(), int(source.child), rate};
     auto const &matrices = source.GetPatterns().template Get<Matrices>(
-        PatternTable::GetKind<REAL>(PatternOf::RatesWithEdge), key.data(), key.data() + key.size(),
-        [&] {
-            return makeHalf(source, _inner.Find(0, _inner.GetSize()), half, isReversed,
-                            _tessellation.GetFaceSize(), rate);
-        });
-    // Those of the edge come last.
-    static thread_local std::vector<PlaceRun> runs;
-    runs = matrices.runs;
-    int const numInside = int(matrices.matrices[0].GetNumPlaces()) - (rate - 1);
-    for (PlaceRun &run : runs) {
-        run.place += run.row < numInside ? _tessellation.GetNumBoundaryCoords() : first + 1;
-    }
-    SumUpPlaces(matrices.matrices[0],
-                {source.points, source.stride, _border.GetSize(), source.indices, _results[0],
-                 _resultStride, runs.data(), runs.size()});
+        PatternTable::GetKind<REAL>(PatternOf::RatesWithEdge), std::begin(key), std::end(key),
+        [&] { return makeHalf(source, half, isReversed, rate, first); });
+    sumUp(source, matrices, false, 0);
 }
 
 // The matrices of those places that the source has.
@@ -300,7 +287,7 @@ RateEvaluator<REAL>::makeInside(Source const &source, std::vector<BfrPlace> cons
         return makeMatrices(source, places, hasDerivatives);
     }
     std::vector<PlaceRun> runs;
-    std::vector<BfrPlace> const ofChild = selectPlaces(places, source.child, faceSize, runs);
+    std::vector<BfrPlace> const ofChild = selectPlaces(places, 0, source.child, faceSize, runs);
     Matrices matrices = makeMatrices(source, ofChild, hasDerivatives);
     matrices.runs = std::move(runs);
     return matrices;
@@ -309,10 +296,12 @@ RateEvaluator<REAL>::makeInside(Source const &source, std::vector<BfrPlace> cons
 // What the edge makes is, to the bit, what BorderEvaluator makes of it: zeros change no sum of numbers that are finite.
 template <typename REAL>
 typename RateEvaluator<REAL>::Matrices
-RateEvaluator<REAL>::makeHalf(Source const &source, std::vector<BfrPlace> const &places,
-                              HalfWithEdge const &half, bool isReversed, int faceSize, int rate) {
+RateEvaluator<REAL>::makeHalf(Source const &source, HalfWithEdge const &half, bool isReversed,
+                              int rate, int first) {
     Matrices result;
-    std::vector<BfrPlace> const inside = selectPlaces(places, source.child, faceSize, result.runs);
+    std::vector<BfrPlace> const inside =
+        selectPlaces(_inner.Find(0, _inner.GetSize()), _tessellation.GetNumBoundaryCoords(),
+                     source.child, _tessellation.GetFaceSize(), result.runs);
     PlaceMatrix<REAL> &matrix = result.matrices.emplace_back(inside.size() + std::size_t(rate) - 1,
                                                              half.places.GetColumns().size());
     std::size_t row = 0;
@@ -327,7 +316,7 @@ RateEvaluator<REAL>::makeHalf(Source const &source, std::vector<BfrPlace> const 
         stencil.Find(longEdge.GetType(), double(isReversed ? rate - i : i) / rate,
                      longEdge.IsInner() ? StencilOf::Step : StencilOf::Points);
         longEdge.GetPlaces().Order(stencil.GetWeights(), ordered);
-        addToRuns(int(row), i - 1, result.runs);
+        addToRuns(int(row), first + i, result.runs);
         matrix.Set(row++, half.places.Spread(longEdge.GetPlaces(), ordered));
     }
     return result;

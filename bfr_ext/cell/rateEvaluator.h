@@ -7,7 +7,6 @@
 
 #include <opensubdiv/bfr/tessellation.h>
 
-#include <array>
 #include <vector>
 
 namespace OpenSubdivHex::BfrExt::internal {
@@ -81,14 +80,15 @@ private:
                                  bool hasDerivatives);
     static Matrices makeInside(Source const &source, std::vector<BfrPlace> const &places,
                                int faceSize, bool hasDerivatives);
-    static Matrices makeHalf(Source const &source, std::vector<BfrPlace> const &places,
-                             HalfWithEdge const &half, bool isReversed, int faceSize, int rate);
+    Matrices makeHalf(Source const &source, HalfWithEdge const &half, bool isReversed, int rate,
+                      int first);
     template <typename FUNCTION>
     void forEachEdge(FUNCTION const &function) const;
     bool evaluateLatticeBorder() const;
     void evaluateVertex(int edge, int first) const;
     void evaluateEdge(int edge, int rate, int first) const;
-    std::array<int, 6> getKey(Source const &source) const;
+    // What kind of face it is, with its parameterization.
+    int getFaceKey() const;
     void evaluateInside(Source const &source);
     void evaluateInside(Source const &source, PatternOf of);
     void evaluateHalf(Source const &source, HalfWithEdge const &half, bool isReversed, int rate,

@@ -100,7 +100,7 @@ std::vector<Row> const &GetRows() {
                           "Bfr::Surface::Evaluate", 6, 12});
         result.push_back({"surface-rate-derivatives",
                           "surfaces tessellated at rate 8, with derivatives, per point, 1 thread",
-                          "Bfr::Surface::Evaluate", 3, 6});
+                          "Bfr::Surface::Evaluate", 2, 4});
         result.push_back({"surface-cold", "making surfaces, empty cache, per face, 1 thread",
                           "Bfr::RefinerSurfaceFactory", 3, 10});
         result.push_back({"surface-warm", "making surfaces, full cache, per face, 1 thread",
