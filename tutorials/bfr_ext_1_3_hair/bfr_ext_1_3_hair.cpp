@@ -15,6 +15,7 @@
 #include "bfr_ext/surfacePlaces.h"
 #include "far_ext/executor.h"
 #include "far_ext/topologyRefinerFactory.h"
+#include "tools/mesh/catmarkRefiner.h"
 #include "tools/mesh/fileError.h"
 #include "tools/mesh/meshReader.h"
 #include "tools/mesh/meshText.h"
@@ -25,7 +26,6 @@
 
 #include <opensubdiv/bfr/refinerSurfaceFactory.h>
 #include <opensubdiv/bfr/surface.h>
-#include <opensubdiv/far/topologyRefinerFactory.h>
 
 #include <algorithm>
 #include <chrono>
@@ -218,23 +218,9 @@ double findMedian(std::vector<double> values) {
     return *middle;
 }
 
-void requireQuads(Mesh const &mesh, std::string const &input) {
-    for (int face = 0; face < mesh.GetNumFaces(); ++face) {
-        int const size = mesh.faceSizes[std::size_t(face)];
-        if (size != 4) {
-            throw FileError(
-                input, "face " + std::to_string(face) + " has " + std::to_string(size) +
-                           " sides, but --bfr takes quads alone, where (u, v) are those of Bfr");
-        }
-    }
-}
-
 void run(Arguments const &arguments) {
     FarExt::ExecutorScope const threads(nullptr, arguments.numThreads);
     Mesh const mesh = ReadInput(kName, arguments.input);
-    if (arguments.hasBfr) {
-        requireQuads(mesh, arguments.input);
-    }
     Sdc::Options sdcOptions;
     sdcOptions.SetVtxBoundaryInterpolation(Sdc::Options::VTX_BOUNDARY_EDGE_AND_CORNER);
     FarExt::TopologyRefinerFactory::Options options;
@@ -245,6 +231,11 @@ void run(Arguments const &arguments) {
     auto const factory = refiner ? BfrExt::SurfaceFactory::Create(*refiner, &status) : nullptr;
     if (!factory) {
         throw FileError(arguments.input, status.GetErrorMessage());
+    }
+
+    std::unique_ptr<Far::TopologyRefiner> bfrRefiner;
+    if (arguments.hasBfr) {
+        bfrRefiner = CreateCatmarkRefiner(mesh, sdcOptions, arguments.input);
     }
 
     // Once.
@@ -259,13 +250,9 @@ void run(Arguments const &arguments) {
         throw FileError(arguments.input, status.GetErrorMessage());
     }
     std::printf("%d roots on %d faces, made in %.1f ms", numRoots, mesh.GetNumFaces(), making);
-    std::unique_ptr<Far::TopologyRefiner> bfrRefiner;
     std::unique_ptr<Bfr::RefinerSurfaceFactory<>> bfrFactory;
     std::unique_ptr<BfrPlaces> bfrPlaces;
-    if (arguments.hasBfr) {
-        using Factory = Far::TopologyRefinerFactory<Far::TopologyDescriptor>;
-        bfrRefiner.reset(Factory::Create(DescribeTopology(mesh),
-                                         Factory::Options(Sdc::SCHEME_CATMARK, sdcOptions)));
+    if (bfrRefiner) {
         bfrFactory = std::make_unique<Bfr::RefinerSurfaceFactory<>>(*bfrRefiner);
         std::printf(", Bfr: %.1f ms",
                     measure([&] { bfrPlaces = std::make_unique<BfrPlaces>(*bfrFactory, roots); }));
