@@ -35,6 +35,8 @@
 #include <memory>
 #include <numeric>
 #include <random>
+#include <stdexcept>
+#include <string>
 
 namespace OpenSubdivHex::Tools {
 
@@ -85,7 +87,8 @@ float computeArea(Mesh const &mesh, int const *vertices, int size) {
 }
 
 /// Roots at random places, as many on a face as its area asks for, in no order.
-Roots plantRoots(Mesh const &mesh, BfrExt::SurfaceFactory const &factory, int numRoots) {
+Roots plantRoots(Mesh const &mesh, BfrExt::SurfaceFactory const &factory, int numRoots,
+                 std::string const &input) {
     std::vector<float> areas;
     int const *vertices = mesh.faceVertices.data();
     for (int face = 0; face < mesh.GetNumFaces(); ++face) {
@@ -93,6 +96,11 @@ Roots plantRoots(Mesh const &mesh, BfrExt::SurfaceFactory const &factory, int nu
         areas.push_back(factory.GetLevel().IsFaceHole(face) ? 0
                                                             : computeArea(mesh, vertices, size));
         vertices += size;
+    }
+    double const sum = std::accumulate(areas.begin(), areas.end(), 0.0);
+    if (!(sum > 0) || !std::isfinite(sum)) {
+        throw FileError(input, sum > 0 ? "the areas of faces are beyond the range of floats"
+                                       : "all faces are holes, or without an area");
     }
     Roots roots;
     std::mt19937 random(1);
@@ -139,7 +147,10 @@ public:
             if (face != lastFace) {
                 _firstPlaces.push_back(i);
                 _surfaces.emplace_back();
-                factory.InitVertexSurface(face, &_surfaces.back());
+                if (!factory.InitVertexSurface(face, &_surfaces.back())) {
+                    throw std::runtime_error("face " + std::to_string(face) +
+                                             " has no surface in Bfr");
+                }
                 lastFace = face;
             }
         }
@@ -239,7 +250,7 @@ void run(Arguments const &arguments) {
     }
 
     // Once.
-    Roots const roots = plantRoots(mesh, *factory, arguments.numHairs);
+    Roots const roots = plantRoots(mesh, *factory, arguments.numHairs, arguments.input);
     int const numRoots = roots.GetNumRoots();
     std::unique_ptr<BfrExt::SurfacePlaces<float>> places;
     double const making = measure([&] {

@@ -38,6 +38,7 @@
 #include <cstdio>
 #include <memory>
 #include <optional>
+#include <string>
 
 namespace OpenSubdivHex::Tools {
 
@@ -97,16 +98,17 @@ struct Surfaces {
     std::vector<std::vector<float>> patchPoints;
 
     Surfaces() = default;
-    template <typename FACTORY>
-    Surfaces(FACTORY const &factory, Mesh const &mesh, std::string const &input)
+    /// \param init  makes the surface of a face that is no hole: init(face, surface)
+    template <typename INIT>
+    Surfaces(INIT const &init, Mesh const &mesh)
         : surfaces(std::size_t(mesh.GetNumFaces())), patchPoints(surfaces.size()) {
         std::vector<bool> isHole(surfaces.size());
         for (int const hole : mesh.tags.holes) {
             isHole[std::size_t(hole)] = true;
         }
         for (std::size_t face = 0; face < surfaces.size(); ++face) {
-            if (!isHole[face] && !factory.InitVertexSurface(int(face), &surfaces[face])) {
-                throw FileError(input, "face " + std::to_string(face) + " has no surface");
+            if (!isHole[face]) {
+                init(int(face), &surfaces[face]);
             }
         }
         FarExt::ParallelFor(mesh.GetNumFaces(), [&](int face) {
@@ -167,14 +169,13 @@ std::uint8_t toByte(float light) {
     return std::uint8_t(std::lround(255 * std::pow(std::fmin(light, 1.0F), 1 / 2.2F)));
 }
 
-/// Draws the picture of the surfaces that a factory makes; raises *distance to the largest one of a
-/// hit from the surface's point, in sides of the facet.
-template <typename SURFACE, typename FACTORY>
-Image draw(char const *name, FACTORY const &factory, Mesh const &mesh, Camera const &camera,
+/// Draws the picture of the surfaces that init(face, surface) makes; raises *distance to the largest one
+/// of a hit from the surface's point, in sides of the facet.
+template <typename SURFACE, typename INIT>
+Image draw(char const *name, INIT const &init, Mesh const &mesh, Camera const &camera,
            Arguments const &arguments, float *distance) {
     Surfaces<SURFACE> surfaces;
-    double const preparing =
-        measure([&] { surfaces = Surfaces<SURFACE>(factory, mesh, arguments.input); });
+    double const preparing = measure([&] { surfaces = Surfaces<SURFACE>(init, mesh); });
     std::vector<FaceFacets> facets(surfaces.surfaces.size());
     double const tessellating = measure([&] {
         FarExt::ParallelFor(mesh.GetNumFaces(), [&](int number) {
@@ -278,14 +279,25 @@ void run(Arguments const &arguments) {
         bfrRefiner = CreateCatmarkRefiner(mesh, sdcOptions, arguments.input);
     }
     float distance = 0;
+    auto const init = [&](int face, BfrExt::Surface<float> *surface) {
+        if (!factory->InitVertexSurface(face, surface, &status)) {
+            throw FileError(arguments.input, status.GetErrorMessage());
+        }
+    };
     Image picture =
-        draw<BfrExt::Surface<float>>("hexagonal", *factory, mesh, camera, arguments, &distance);
+        draw<BfrExt::Surface<float>>("hexagonal", init, mesh, camera, arguments, &distance);
     if (bfrRefiner) {
         Bfr::RefinerSurfaceFactory<> const bfrFactory(*bfrRefiner);
+        auto const bfrInit = [&](int face, Bfr::Surface<float> *surface) {
+            if (!bfrFactory.InitVertexSurface(face, surface)) {
+                throw FileError(arguments.input,
+                                "face " + std::to_string(face) + " has no surface in Bfr");
+            }
+        };
         Image const left = picture;
         picture = Image(2 * arguments.width, arguments.height);
         PasteImage(left, 0, 0, &picture);
-        PasteImage(draw<Bfr::Surface<float>>("Bfr's Catmull-Clark", bfrFactory, mesh, camera,
+        PasteImage(draw<Bfr::Surface<float>>("Bfr's Catmull-Clark", bfrInit, mesh, camera,
                                              arguments, &distance),
                    arguments.width, 0, &picture);
     }
