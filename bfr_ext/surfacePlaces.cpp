@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <string>
 
 namespace OpenSubdivHex::BfrExt {
 
@@ -14,12 +15,16 @@ template <typename REAL>
 std::unique_ptr<SurfacePlaces<REAL>>
 SurfacePlaces<REAL>::Create(SurfaceFactory const &factory, int numPlaces, Index const faces[],
                             REAL const uvs[], Options options, CallStatus *status) {
-    CallStatus result;
-    if (numPlaces < 0) {
-        result = CallStatus(FarExt::StatusCode::InvalidArgument, FarExt::ComponentType::NoComponent,
-                            0, "the number of places is negative");
+    CallStatus const result =
+        numPlaces >= 0
+            ? FarExt::internal::CheckStencilMode(factory.GetMesh(), options.interpolationMode,
+                                                 options.fvarChannel)
+            : CallStatus(FarExt::StatusCode::InvalidArgument, FarExt::ComponentType::NoComponent, 0,
+                         "the number of places is " + std::to_string(numPlaces));
+    if (!FarExt::internal::Report(result, status)) {
+        return nullptr;
     }
-    std::vector<Index> order(std::size_t(std::max(numPlaces, 0)));
+    std::vector<Index> order(static_cast<std::size_t>(numPlaces));
     std::iota(order.begin(), order.end(), 0);
     std::stable_sort(order.begin(), order.end(),
                      [&](Index a, Index b) { return faces[a] < faces[b]; });
@@ -28,11 +33,11 @@ SurfacePlaces<REAL>::Create(SurfaceFactory const &factory, int numPlaces, Index 
     auto const init = [&](Index face, Surface<REAL> &surface) {
         switch (options.interpolationMode) {
         case FarExt::INTERPOLATE_VERTEX:
-            return factory.InitVertexSurface(face, &surface, &result);
+            return factory.InitVertexSurface(face, &surface, status);
         case FarExt::INTERPOLATE_VARYING:
-            return factory.InitVaryingSurface(face, &surface, &result);
+            return factory.InitVaryingSurface(face, &surface, status);
         default:
-            return factory.InitFaceVaryingSurface(face, &surface, options.fvarChannel, &result);
+            return factory.InitFaceVaryingSurface(face, &surface, options.fvarChannel, status);
         }
     };
     Index lastFace = Far::INDEX_INVALID;
@@ -43,16 +48,13 @@ SurfacePlaces<REAL>::Create(SurfaceFactory const &factory, int numPlaces, Index 
             places->_firstPlaces.push_back(Index(places->_places.size()));
             places->_surfaces.emplace_back();
             if (!init(face, places->_surfaces.back())) {
-                break;
+                return nullptr;
             }
         }
         REAL const *const uv = uvs + 2 * std::ptrdiff_t(number);
         places->_places.push_back({number, {uv[0], uv[1]}});
     }
     places->_firstPlaces.push_back(Index(places->_places.size()));
-    if (!FarExt::internal::Report(result, status)) {
-        return nullptr;
-    }
     return places;
 }
 

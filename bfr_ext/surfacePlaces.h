@@ -29,9 +29,9 @@ public:
 
     /// \brief What the points are.
     struct Options {
-        /// FarExt::INTERPOLATE_VERTEX, INTERPOLATE_VARYING or INTERPOLATE_FACE_VARYING.
-        int interpolationMode = FarExt::INTERPOLATE_VERTEX;
-        int fvarChannel = 0; ///< of face-varying points
+        FarExt::StencilMode interpolationMode =
+            FarExt::INTERPOLATE_VERTEX; ///< how points are refined
+        int fvarChannel = 0;            ///< of face-varying points
     };
 
     /// \brief Finds the surfaces of places.

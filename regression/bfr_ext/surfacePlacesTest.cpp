@@ -441,6 +441,11 @@ TEST(SurfacePlaces, OfManyFacesAreThoseOfEach) {
     auto const other = SurfaceFactory::Create(*refiner);
     FarExt::CallStatus status;
     EXPECT_EQ(Places::Create(*other, 0, nullptr, nullptr)->GetNumPlaces(), 0);
+    Places::Options ofChannel;
+    ofChannel.interpolationMode = FarExt::INTERPOLATE_FACE_VARYING;
+    ofChannel.fvarChannel = 7;
+    EXPECT_FALSE(Places::Create(*other, 0, nullptr, nullptr, ofChannel, &status));
+    EXPECT_EQ(status.GetCode(), FarExt::StatusCode::InvalidArgument);
     EXPECT_FALSE(Places::Create(*other, -1, nullptr, nullptr, &status));
     EXPECT_EQ(status.GetCode(), FarExt::StatusCode::InvalidArgument);
     faces[7] = shape.GetNumFaces();
