@@ -135,7 +135,8 @@ Contestant makeTableContestant(std::string const &name, MAKE make) {
 Contest makeTableContest(BenchMesh const &mesh) {
     std::shared_ptr<FarExt::TopologyRefiner> const refiner = MakeFullyRefined(mesh);
     std::shared_ptr<Far::TopologyRefiner> const farRefiner = MakeFarBase(mesh);
-    Far::PatchTableFactory::Options options(unsigned(mesh.level) - 1);
+    // Catmull-Clark's patches are quads, which other faces have from level 1 on.
+    Far::PatchTableFactory::Options options(unsigned(std::max(mesh.level - 1, 1)));
     options.SetEndCapType(Far::PatchTableFactory::Options::ENDCAP_GREGORY_BASIS);
     farRefiner->RefineAdaptive(options.GetRefineAdaptiveOptions());
     Contest contest;
