@@ -148,6 +148,29 @@ void forEachCorner(PatchSurface const &surface, FUNCTION const &function) {
     }
 }
 
+// The patches around the centre of a face have the lines to it, and tangent planes there, in common.
+void expectKitesToMeet(PatchSurface const &surface, double size) {
+    TopologyLevel const &level = surface.GetLevel();
+    for (Index face = 0; face < level.GetNumFaces(); ++face) {
+        int const faceSize = level.GetFaceVertices(face).size();
+        Index const first = surface.GetFirstPatch(face, 0);
+        if (faceSize == 4 || faceSize == 6 || first == Far::INDEX_INVALID) {
+            continue;
+        }
+        for (int i = 0; i < faceSize; ++i) {
+            for (double const part : {0.2, 0.9}) {
+                PatchPoint const a = surface.Evaluate(first + i, 1, part);
+                PatchPoint const b = surface.Evaluate(first + (i + 1) % faceSize, part, 1);
+                EXPECT_LT((a.p - b.p).norm(), 1e-12 * size);
+                if (isPlane(a.ds, a.dt, size) && isPlane(b.ds, b.dt, size)) {
+                    EXPECT_LT(getAngle(a.GetNormal(), b.GetNormal()), 1e-6)
+                        << "face " << face << ", kite " << i;
+                }
+            }
+        }
+    }
+}
+
 } // namespace
 
 // Corners are limit points, and the tangent planes there are those of the limit, on the side of each patch.
@@ -209,6 +232,7 @@ TEST(PatchTable, PatchesMeet) {
             return !hasPlane(level, sides, sides.FindSide(level, face, local, half)) ||
                    !hasPlane(level, sides, sides.FindSide(level, face, otherLocal, half));
         };
+        expectKitesToMeet(surface, size);
         for (Index edge = 0; edge < level.GetNumEdges(); ++edge) {
             if (!surface.HasSide(edge, 0) || !surface.HasSide(edge, 1)) {
                 continue;
