@@ -2,7 +2,6 @@
 #include "latticeFaces.h"
 
 #include "faceDescendants.h"
-#include "patchRows.h"
 
 #include "far_ext/vtr/parallel.h"
 

@@ -3,7 +3,6 @@
 #define OPENSUBDIVHEX_FAR_EXT_LIMIT_LATTICE_STENCILS_H
 
 #include "latticeFaces.h"
-#include "limitStencilPlace.h"
 
 #include "far_ext/vtr/parallel.h"
 

@@ -3,7 +3,6 @@
 #define OPENSUBDIVHEX_FAR_EXT_LIMIT_LIMIT_MULTIPLIER_H
 
 #include "limitRows.h"
-#include "limitStencilPlace.h"
 
 #include "far_ext/stencil/levelStencils.h"
 #include "far_ext/vtr/indexSet.h"

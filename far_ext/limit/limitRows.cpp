@@ -231,7 +231,7 @@ LimitRow LimitRows::GetRow(Index vert, int side,
     }
     LimitMask const &mask = *entry->mask;
     LimitMask::Tangents const &tangents =
-        mask.sides[std::size_t(range.sides[std::size_t(entry->firstSide + side)])];
+        mask.sides[std::size_t(range.sides[std::size_t(entry->firstSide) + std::size_t(side)])];
     return {int(mask.weights.size()), range.sources.data() + entry->firstSource,
             mask.weights.data(), tangents.du.data(), tangents.dv.data()};
 }

@@ -46,6 +46,15 @@ struct LimitRow {
     double const *dv;
 };
 
+/// Where a limit stencil is to be written, an entry of each array for each of its control vertices.
+template <typename REAL>
+struct LimitStencilPlace {
+    Far::Index *indices;
+    REAL *weights;
+    REAL *duWeights; ///< these two are null without derivatives
+    REAL *dvWeights;
+};
+
 /// \brief The limit at the vertices of a level as a matrix: the one place that joins limit masks to
 /// vertices.  Tables are made, primvars refined and frames evaluated through it.
 ///

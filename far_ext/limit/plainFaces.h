@@ -3,7 +3,7 @@
 #define OPENSUBDIVHEX_FAR_EXT_LIMIT_PLAIN_FACES_H
 
 #include "limitRows.h"
-#include "patchRows.h"
+#include "rowSteps.h"
 
 #include <vector>
 
