@@ -1,4 +1,4 @@
-    {{kLength, 0, kEdge, 12, 14, 4, 4, true, true, 0}, 0.965},
+{{kLength, 0, kEdge, 12, 14, 4, 4, true, true, 0}, 0.965},
     {{kLength, 0, kEdge, 12, 15, 4, 4, true, true, 0}, 1.01},
     {{kLength, 0, kEdge, 12, 16, 4, 4, true, true, 0}, 1.015},
     {{kLength, 0, kEdge, 13, 13, 4, 6, true, true, 0}, 1.215},
