@@ -137,7 +137,6 @@ BasePoint MakeBasePoint(int size, int sector, Pair const &coords) {
 }
 
 CellStep FindCellStep(bool isWhole, int sector, Pair const &coords) {
-    static constexpr CellMap kToFFace = {{{2, 0}, {0, 2}}, {0, 0}};
     if (!isWhole) {
         int const child = HalfCell::FindChild(coords);
         return {std::size_t(child), &HalfCell::kChildren[child], false};

@@ -5,6 +5,7 @@
 #include "placeKernel.h"
 #include "refinedCells.h"
 
+#include "bfr_ext/surface.h"
 #include "far_ext/patch/cellPatchPoints.h"
 #include "far_ext/vtr/inline.h"
 
@@ -226,7 +227,6 @@ Quadrilateral findInWhole(int size, int sector, CellPlace &place, int &patch) {
 } // namespace
 
 PatchPlace FindPatchPlace(BasePoint const &point, int size, int level, int numDerivatives) {
-    static constexpr CellMap kToFFace = {{{2, 0}, {0, 2}}, {0, 0}};
     CellPlace cell = {point.coords, {point.toCoords[0], point.toCoords[1]}};
     int left = level;
     for (; left > 0 && cell.coords[0] + cell.coords[1] <= 0.5; --left) {

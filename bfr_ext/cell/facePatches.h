@@ -2,7 +2,6 @@
 #ifndef OPENSUBDIVHEX_BFR_EXT_CELL_FACE_PATCHES_H
 #define OPENSUBDIVHEX_BFR_EXT_CELL_FACE_PATCHES_H
 
-#include "../surface.h"
 #include "cellStencil.h"
 
 #include "far_ext/patch/patchBuilder.h"
@@ -10,6 +9,8 @@
 #include <cstddef>
 
 namespace OpenSubdivHex::BfrExt::internal {
+
+class BaseType;
 
 using FarExt::internal::kNumPatchPoints;
 

@@ -35,6 +35,9 @@ struct CellMap {
     Pair shift;
 };
 
+/// The coordinates in a sector of the F-face of a whole cell, from those in the sector of the cell.
+inline constexpr CellMap kToFFace = {{{2, 0}, {0, 2}}, {0, 0}};
+
 /// first, then second.
 inline CellMap Concatenate(CellMap const &first, CellMap const &second) {
     CellMap result;

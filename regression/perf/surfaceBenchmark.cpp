@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // Surfaces of faces against Bfr's of Catmull-Clark or, of triangles, Loop: nanoseconds per point of a
-// tessellation of every face, without and with first derivatives, and per surface that is made, with
-// a cache that is empty or full; per point of surfaces that are made and evaluated for the first time; and per
-// place at random, and per face whose patch points are prepared for that.
-// tessellation of every face, of a level and of a rate, without and with first derivatives, and per surface that is
-// made, with a cache that is empty or full; and per point of surfaces that are made and evaluated for the first time.
+// tessellation of every face, of a level and of a rate, without and with first derivatives; per surface that is made,
+// with a cache that is empty or full; per point of surfaces that are made and evaluated for the first time; per place
+// at random, and per face whose patch points are prepared for that.
 #include "makers.h"
 #include "suite.h"
 
@@ -74,6 +72,14 @@ struct Surfaces {
 };
 using OwnSurfaces = Surfaces<BfrExt::SurfaceFactory, OwnSurface>;
 using PeerSurfaces = Surfaces<Bfr::RefinerSurfaceFactory<>, PeerSurface>;
+
+/// Makes the surfaces of all faces, of both.
+void makeSurfaces(Workspace const &workspace, OwnSurfaces *own, PeerSurfaces *peer) {
+    own->factory = BfrExt::SurfaceFactory::Create(*workspace.refiner);
+    peer->factory = std::make_unique<Bfr::RefinerSurfaceFactory<>>(*workspace.peerRefiner);
+    own->Init(workspace.GetNumFaces());
+    peer->Init(workspace.GetNumFaces());
+}
 
 /// Evaluates a tessellation of each face, of levels or of rates.
 template <class TESSELLATION>
@@ -209,10 +215,7 @@ Contest makePointContest(BenchMesh const &mesh, bool isRegular) {
     auto const workspace = std::make_shared<Workspace>(mesh);
     auto const own = std::make_shared<OwnSurfaces>();
     auto const peer = std::make_shared<PeerSurfaces>();
-    own->factory = BfrExt::SurfaceFactory::Create(*workspace->refiner);
-    peer->factory = std::make_unique<Bfr::RefinerSurfaceFactory<>>(*workspace->peerRefiner);
-    own->Init(workspace->GetNumFaces());
-    peer->Init(workspace->GetNumFaces());
+    makeSurfaces(*workspace, own.get(), peer.get());
     auto const tessellation =
         std::make_shared<BfrExt::LevelTessellation>(own->surfaces[0].GetParameterization(), kLevel);
     int const numPlaces = tessellation->GetNumCoords();
@@ -264,10 +267,7 @@ Contest makeRateContest(BenchMesh const &mesh, bool isRegular) {
     auto const workspace = std::make_shared<Workspace>(mesh);
     auto const own = std::make_shared<OwnSurfaces>();
     auto const peer = std::make_shared<PeerSurfaces>();
-    own->factory = BfrExt::SurfaceFactory::Create(*workspace->refiner);
-    peer->factory = std::make_unique<Bfr::RefinerSurfaceFactory<>>(*workspace->peerRefiner);
-    own->Init(workspace->GetNumFaces());
-    peer->Init(workspace->GetNumFaces());
+    makeSurfaces(*workspace, own.get(), peer.get());
     auto const tessellation =
         std::make_shared<Bfr::Tessellation>(own->surfaces[0].GetParameterization().GetBfr(), kRate);
     takeRoom(*own, *peer, tessellation->GetNumCoords(), *workspace);
@@ -424,10 +424,7 @@ Contest makePlacesContest(BenchMesh const &mesh) {
     auto const workspace = std::make_shared<Workspace>(mesh);
     auto const own = std::make_shared<OwnSurfaces>();
     auto const peer = std::make_shared<PeerSurfaces>();
-    own->factory = BfrExt::SurfaceFactory::Create(*workspace->refiner);
-    peer->factory = std::make_unique<Bfr::RefinerSurfaceFactory<>>(*workspace->peerRefiner);
-    own->Init(workspace->GetNumFaces());
-    peer->Init(workspace->GetNumFaces());
+    makeSurfaces(*workspace, own.get(), peer.get());
     // The corner of a triangle, or of the first sub-face of a larger face, and of its neighbours.
     float const width = own->surfaces[0].GetFaceSize() == 4 ? 1.0F : 0.5F;
     Contest contest;
