@@ -5,7 +5,7 @@
 #include "cell/cellStencil.h"
 #include "cell/faceSections.h"
 
-#include "far_ext/vtr/basePolygon.h"
+#include "far_ext/vtr/faceCoords.h"
 
 #include <algorithm>
 #include <cmath>
@@ -365,7 +365,6 @@ std::size_t LevelTessellation::getSizeOfCells(bool hasDerivatives) const {
 std::vector<int> LevelTessellation::setPlaces(CellMesh const &mesh, std::vector<int> const &order) {
     std::vector<CellMesh::Vertex> const &verts = mesh.GetVertices();
     std::vector<int> places(verts.size(), kInvalid);
-    FarExt::internal::BasePolygon const polygon(GetFaceSize());
     _coords.resize(2 * order.size());
     _places.reserve(order.size());
     for (std::size_t place = 0; place < order.size(); ++place) {
@@ -373,7 +372,8 @@ std::vector<int> LevelTessellation::setPlaces(CellMesh const &mesh, std::vector<
         places[std::size_t(order[place])] = int(place);
         double const start = std::ldexp(double(vert.a), -internal::CellShape::kBits);
         double const end = std::ldexp(double(vert.b), -internal::CellShape::kBits);
-        polygon.Write(vert.sector, {start, end}, &_coords[2 * place]);
+        FarExt::internal::WriteFaceCoords(GetFaceSize(), vert.sector, {start, end},
+                                          &_coords[2 * place]);
         _places.push_back({vert.sector, start, end});
         if (_tree && vert.cell >= 0) {
             _tree->corners.push_back({vert.cell, vert.corner, int(place)});
@@ -488,6 +488,20 @@ void LevelTessellation::setSection(CellMesh const &mesh, internal::FaceSections 
     setFacets(mesh, setPlaces(mesh, order));
 }
 
+// All places in a face that is a regular polygon.
+std::vector<double> LevelTessellation::findRegularCoords() const {
+    std::vector<double> coords;
+    coords.reserve(_coords.size());
+    double const unit = 2 * FarExt::internal::kPi / GetFaceSize();
+    for (SectorCoords const &place : _places) {
+        double const start = unit * place.sector;
+        double const end = unit * (place.sector + 1);
+        coords.push_back(place.start * std::cos(start) + place.end * std::cos(end));
+        coords.push_back(place.start * std::sin(start) + place.end * std::sin(end));
+    }
+    return coords;
+}
+
 void LevelTessellation::setFacets(CellMesh const &mesh, std::vector<int> const &places) {
     auto const addFacet = [&](int const *facet, int numVerts, int level) {
         _facetIndices.insert(_facetIndices.end(), facet, facet + numVerts);
@@ -513,7 +527,8 @@ void LevelTessellation::setFacets(CellMesh const &mesh, std::vector<int> const &
         _facetIndices.reserve(std::size_t(_facetSize) * numFacets);
         _firstFacetIndices.reserve(numFacets + 1);
         _facetLevels.reserve(numFacets);
-        Triangulator triangulator(_coords);
+        std::vector<double> const coords = findRegularCoords();
+        Triangulator triangulator(coords);
         std::vector<std::array<int, 3>> triangles;
         mesh.ForEachCell([&](CellMesh::Polygon &polygon) {
             std::vector<int> &facet = polygon.verts;
@@ -535,6 +550,19 @@ void LevelTessellation::setFacets(CellMesh const &mesh, std::vector<int> const &
     _firstFacetIndices.shrink_to_fit();
     _facetLevels.shrink_to_fit();
 }
+
+template <typename REAL>
+int LevelTessellation::GetPlaneCoords(REAL coordTuples[]) const {
+    FarExt::internal::BasePolygon const polygon(GetFaceSize());
+    for (SectorCoords const &place : _places) {
+        polygon.Write(place.sector, {place.start, place.end}, coordTuples);
+        coordTuples += _coordStride;
+    }
+    return GetNumCoords();
+}
+
+template int LevelTessellation::GetPlaneCoords(float[]) const;
+template int LevelTessellation::GetPlaneCoords(double[]) const;
 
 int LevelTessellation::GetLevels(int levels[]) const {
     std::copy(_levels.begin(), _levels.end(), levels);

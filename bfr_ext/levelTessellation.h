@@ -18,8 +18,8 @@ class FaceSections;
 struct PatchPlan;
 } // namespace internal
 
-/// \brief A base face cut into facets, as Bfr::Tessellation: places in its parameter plane, at which a
-/// Surface is evaluated, and the facets between them.
+/// \brief A base face cut into facets, as Bfr::Tessellation: places, at which a Surface is evaluated, and the facets
+/// between them.
 ///
 /// In place of Bfr's rates there are levels of refinement; a Surface takes a Bfr::Tessellation, with rates, too.
 /// The places are those of vertices, and the facets are cells: the F-face and the halves of hexagons that the
@@ -35,7 +35,7 @@ struct PatchPlan;
 ///
 /// A PatchStream cuts faces that are too large for its memory into *sections*, whose tessellations are
 /// parts of that of the face: with the same places and facets, but that hexagons which two sections have
-/// come in two halves, as those that two faces have.  A section is a polygon in the parameter plane of the
+/// come in two halves, as those that two faces have.  A section is a polygon in the plane of the
 /// face, and fits to others as a face does to its neighbours.
 ///
 /// Nothing is changed after construction: several threads may use it.  std::bad_alloc passes through.
@@ -111,7 +111,7 @@ public:
     /// Whether the arguments were as they have to be, and it has not been moved from.
     bool IsValid() const { return !_places.empty(); }
 
-    /// The parameter plane of the face.
+    /// The parameterization of the face.
     Parameterization GetParameterization() const { return _parameterization; }
     /// Vertices of the face.
     int GetFaceSize() const { return _parameterization.GetFaceSize(); }
@@ -149,12 +149,16 @@ public:
         return _firstEdgeCoords[std::size_t(edge) + 1] - _firstEdgeCoords[std::size_t(edge)] - 1;
     }
 
-    /// Writes u and v of all places.
+    /// Writes u and v of all places, in the parameterization of the face.
     /// \return  how many they are, as do the following
     template <typename REAL>
     int GetCoords(REAL coordTuples[]) const {
         return writeCoords(0, GetNumCoords(), coordTuples);
     }
+    /// Writes all places in the plane of FarExt::TopologyLevel::GetFaceBaseCoords(), in which facets can be drawn:
+    /// triangles and quads have the same coordinates there, others no sub-faces.
+    template <typename REAL>
+    int GetPlaneCoords(REAL coordTuples[]) const;
     /// Writes those of the boundary.
     template <typename REAL>
     int GetBoundaryCoords(REAL coordTuples[]) const {
@@ -180,7 +184,7 @@ public:
     /// @}
 
     /// @name Facets
-    /// They are counter-clockwise in the parameter plane.
+    /// They are counter-clockwise in the plane of GetPlaneCoords().
     /// @{
 
     /// All facets.
@@ -289,6 +293,7 @@ private:
     void setSection(internal::CellMesh const &mesh, internal::FaceSections const &sections);
     std::vector<int> setPlaces(internal::CellMesh const &mesh, std::vector<int> const &order);
     static void sortByCell(std::vector<CellCorner> &corners);
+    std::vector<double> findRegularCoords() const;
     void setFacets(internal::CellMesh const &mesh, std::vector<int> const &places);
     template <typename FUNCTION>
     void transform(int facetTuples[], FUNCTION function) const;

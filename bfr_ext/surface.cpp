@@ -135,7 +135,7 @@ void Surface<REAL>::evaluate(REAL const uv[2], int numDerivatives, REAL const pa
     if (IsValid()) {
         internal::EvaluatePatch(
             internal::FindPatchPlace(
-                internal::FindBasePoint(GetFaceSize(), double(uv[0]), double(uv[1]), 0),
+                internal::FindBfrPlace(_parameterization, {double(uv[0]), double(uv[1])}, 0),
                 GetFaceSize(), _patchLevel, numDerivatives),
             numDerivatives, patchPoints + std::ptrdiff_t(GetNumControlPoints()) * pointDesc.stride,
             pointDesc.size, pointDesc.stride, results);
@@ -170,7 +170,9 @@ void Surface<REAL>::Evaluate(LevelTessellation const &tessellation, REAL const c
                              PointDescriptor const &pointDesc, REAL p[],
                              PointDescriptor const &resultDesc) const {
     REAL *const results[3] = {p, nullptr, nullptr};
-    evaluate(tessellation, controlPoints, pointDesc, results, resultDesc);
+    if (canEvaluate(tessellation)) {
+        evaluate(tessellation, controlPoints, pointDesc, results, resultDesc);
+    }
 }
 
 template <typename REAL>
@@ -178,7 +180,11 @@ void Surface<REAL>::Evaluate(LevelTessellation const &tessellation, REAL const c
                              PointDescriptor const &pointDesc, REAL p[], REAL du[], REAL dv[],
                              PointDescriptor const &resultDesc) const {
     REAL *const results[3] = {p, du, dv};
-    evaluate(tessellation, controlPoints, pointDesc, results, resultDesc);
+    REAL *const derivatives[5] = {du, dv};
+    if (canEvaluate(tessellation)) {
+        evaluate(tessellation, controlPoints, pointDesc, results, resultDesc);
+        turnDerivatives(tessellation, std::size_t(pointDesc.size), derivatives, resultDesc);
+    }
 }
 
 template <typename REAL>
@@ -189,7 +195,8 @@ void Surface<REAL>::Evaluate(LevelTessellation const &tessellation, REAL const c
     if (!canEvaluate(tessellation)) {
         return;
     }
-    Evaluate(tessellation, controlPoints, pointDesc, p, du, dv, resultDesc);
+    REAL *const results[3] = {p, du, dv};
+    evaluate(tessellation, controlPoints, pointDesc, results, resultDesc);
     CellStencil stencil(*_type);
     std::ptrdiff_t result = 0;
     for (LevelTessellation::SectorCoords const &place : tessellation._places) {
@@ -197,15 +204,17 @@ void Surface<REAL>::Evaluate(LevelTessellation const &tessellation, REAL const c
             internal::MakeBasePoint(GetFaceSize(), place.sector, {place.start, place.end});
         stencil.Find(point, false);
         stencil.FindSecond(point);
-        auto const sum = [&](std::vector<double> const &weights, REAL *results) {
+        auto const sum = [&](std::vector<double> const &weights, REAL *to) {
             sumUp(weights.data(), GetNumControlPoints(), controlPoints, nullptr, pointDesc,
-                  results + result);
+                  to + result);
         };
         sum(stencil.GetDuuWeights(), duu);
         sum(stencil.GetDuvWeights(), duv);
         sum(stencil.GetDvvWeights(), dvv);
         result += resultDesc.stride;
     }
+    REAL *const derivatives[5] = {du, dv, duu, duv, dvv};
+    turnDerivatives(tessellation, std::size_t(pointDesc.size), derivatives, resultDesc);
 }
 
 template <typename REAL>
@@ -239,10 +248,34 @@ bool Surface<REAL>::canEvaluate(LevelTessellation const &tessellation) const {
 }
 
 template <typename REAL>
-internal::BasePoint Surface<REAL>::findPoint(REAL const uv[2]) const {
+internal::BfrPlace Surface<REAL>::findPlace(REAL const uv[2]) const {
     // Rounding of u and v matters more in larger polygons.
     double const tolerance = 2 * GetFaceSize() * double(std::numeric_limits<REAL>::epsilon());
-    return internal::FindBasePoint(GetFaceSize(), double(uv[0]), double(uv[1]), tolerance);
+    return internal::FindBfrPlace(_parameterization, {double(uv[0]), double(uv[1])}, tolerance);
+}
+
+// Turns derivatives by the coordinates of the plane of the face into those by u and v, at all places of a tessellation.
+template <typename REAL>
+void Surface<REAL>::turnDerivatives(LevelTessellation const &tessellation, std::size_t size,
+                                    REAL *const derivatives[5],
+                                    PointDescriptor const &resultDesc) const {
+    if (!_parameterization.HasSubFaces()) {
+        return;
+    }
+    for (std::size_t i = 0; i < tessellation._places.size(); ++i) {
+        internal::BfrPlace const place = internal::FindBfrPlace(
+            _parameterization, {tessellation._coords[2 * i], tessellation._coords[2 * i + 1]}, 0);
+        auto const at = [&](std::size_t kind) {
+            return derivatives[kind] + std::ptrdiff_t(i) * resultDesc.stride;
+        };
+        REAL *const first[2] = {at(0), at(1)};
+        if (derivatives[2]) {
+            REAL *const second[3] = {at(2), at(3), at(4)};
+            internal::ToUv(place, size, first, second);
+        } else {
+            internal::ToUv<REAL>(place, size, first, nullptr);
+        }
+    }
 }
 
 // Calls function(evaluator) for the border of the face.
@@ -266,9 +299,6 @@ template <typename REAL>
 void Surface<REAL>::evaluate(LevelTessellation const &tessellation, REAL const controlPoints[],
                              PointDescriptor const &pointDesc, REAL *const results[3],
                              PointDescriptor const &resultDesc) const {
-    if (!canEvaluate(tessellation)) {
-        return;
-    }
     if (tessellation._tree && !tessellation._cellPlan) {
         evaluateTree(tessellation, controlPoints, pointDesc, results, resultDesc);
         return;
@@ -543,49 +573,53 @@ bool Surface<REAL>::evaluateLatticeBorder(LevelTessellation const &tessellation,
     return evaluator.EvaluateInLattice(edges, resultDesc.stride);
 }
 
+// Writes the weights of the point, and of derivatives as far as \p numDerivatives asks.
 template <typename REAL>
-int Surface<REAL>::EvaluateStencil(REAL const uv[2], REAL weights[]) const {
+int Surface<REAL>::evaluateStencil(REAL const uv[2], int numDerivatives,
+                                   REAL *const weights[6]) const {
     if (!IsValid()) {
         return 0;
     }
+    internal::BfrPlace const place = findPlace(uv);
     CellStencil stencil(*_type);
-    stencil.Find(findPoint(uv), false);
-    copyWeights(stencil.GetWeights(), weights);
+    stencil.Find(place.point, numDerivatives > 0);
+    copyWeights(stencil.GetWeights(), weights[0]);
+    if (numDerivatives > 0) {
+        copyWeights(stencil.GetDuWeights(), weights[1]);
+        copyWeights(stencil.GetDvWeights(), weights[2]);
+    }
+    if (numDerivatives > 1) {
+        stencil.FindSecond(place.point);
+        copyWeights(stencil.GetDuuWeights(), weights[3]);
+        copyWeights(stencil.GetDuvWeights(), weights[4]);
+        copyWeights(stencil.GetDvvWeights(), weights[5]);
+    }
+    if (numDerivatives > 0 && _parameterization.HasSubFaces()) {
+        internal::ToUv(place, std::size_t(GetNumControlPoints()), weights + 1,
+                       numDerivatives > 1 ? weights + 3 : nullptr);
+    }
     return GetNumControlPoints();
+}
+
+template <typename REAL>
+int Surface<REAL>::EvaluateStencil(REAL const uv[2], REAL weights[]) const {
+    REAL *const all[6] = {weights};
+    return evaluateStencil(uv, 0, all);
 }
 
 template <typename REAL>
 int Surface<REAL>::EvaluateStencil(REAL const uv[2], REAL weights[], REAL duWeights[],
                                    REAL dvWeights[]) const {
-    if (!IsValid()) {
-        return 0;
-    }
-    CellStencil stencil(*_type);
-    stencil.Find(findPoint(uv), true);
-    copyWeights(stencil.GetWeights(), weights);
-    copyWeights(stencil.GetDuWeights(), duWeights);
-    copyWeights(stencil.GetDvWeights(), dvWeights);
-    return GetNumControlPoints();
+    REAL *const all[6] = {weights, duWeights, dvWeights};
+    return evaluateStencil(uv, 1, all);
 }
 
 template <typename REAL>
 int Surface<REAL>::EvaluateStencil(REAL const uv[2], REAL weights[], REAL duWeights[],
                                    REAL dvWeights[], REAL duuWeights[], REAL duvWeights[],
                                    REAL dvvWeights[]) const {
-    if (!IsValid()) {
-        return 0;
-    }
-    internal::BasePoint const point = findPoint(uv);
-    CellStencil stencil(*_type);
-    stencil.Find(point, true);
-    stencil.FindSecond(point);
-    copyWeights(stencil.GetWeights(), weights);
-    copyWeights(stencil.GetDuWeights(), duWeights);
-    copyWeights(stencil.GetDvWeights(), dvWeights);
-    copyWeights(stencil.GetDuuWeights(), duuWeights);
-    copyWeights(stencil.GetDuvWeights(), duvWeights);
-    copyWeights(stencil.GetDvvWeights(), dvvWeights);
-    return GetNumControlPoints();
+    REAL *const all[6] = {weights, duWeights, dvWeights, duuWeights, duvWeights, dvvWeights};
+    return evaluateStencil(uv, 2, all);
 }
 
 template <typename REAL>

@@ -24,7 +24,7 @@ template <typename REAL>
 class BorderEvaluator;
 template <typename REAL>
 class PatchEvaluator;
-struct BasePoint;
+struct BfrPlace;
 
 /// The type of a base face: that of a plain one, or one that was made at once.
 class BaseType {
@@ -127,7 +127,7 @@ public:
     /// Makes it invalid.
     void Clear();
 
-    /// The parameter plane of the face.
+    /// The parameterization of the face.
     Parameterization GetParameterization() const { return _parameterization; }
     /// Vertices of the face.
     int GetFaceSize() const { return _parameterization.GetFaceSize(); }
@@ -235,9 +235,9 @@ public:
     /// edge, evenly spaced.
     ///
     /// Rates, options, coordinates and facets are Bfr's.  Derivatives are by the u and v that its coordinates are:
-    /// Parameterization::ConvertFromBfr() says where these lie.
+    /// these are GetParameterization()'s, but for a triangle in sub-faces.
     ///
-    /// \param tessellation  made for a face of this size, as of GetParameterization().GetBfr(); a triangle may have
+    /// \param tessellation  made for a face of this size, as of GetParameterization(); a triangle may have
     ///                      the sub-faces of Catmull-Clark, too.  Nothing is written where it is of another size,
     ///                      or invalid.
     ///
@@ -293,7 +293,10 @@ private:
     // Has what evaluates it brought to the cache, while control points are gathered.
     void prefetch() const;
     bool canEvaluate(LevelTessellation const &tessellation) const;
-    internal::BasePoint findPoint(REAL const uv[2]) const;
+    internal::BfrPlace findPlace(REAL const uv[2]) const;
+    int evaluateStencil(REAL const uv[2], int numDerivatives, REAL *const weights[6]) const;
+    void turnDerivatives(LevelTessellation const &tessellation, std::size_t size,
+                         REAL *const derivatives[5], PointDescriptor const &resultDesc) const;
     void evaluate(REAL const uv[2], int numDerivatives, REAL const patchPoints[],
                   PointDescriptor const &pointDesc, REAL *const results[6]) const;
     void evaluate(LevelTessellation const &tessellation, REAL const controlPoints[],

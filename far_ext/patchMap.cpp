@@ -2,8 +2,10 @@
 #include "patchMap.h"
 
 #include "far_ext/patch/patchChecks.h"
-#include "far_ext/vtr/basePolygon.h"
+#include "far_ext/vtr/baseCoords.h"
+#include "far_ext/vtr/faceCoords.h"
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 #include <utility>
@@ -106,6 +108,28 @@ Point evaluate(std::array<double, 8> const &q, double s, double t) {
     return (1 - t) * ((1 - s) * at(0) + s * at(1)) + t * ((1 - s) * at(3) + s * at(2));
 }
 
+// The sector of the polygon that has a place, or is nearest, and where it is there.
+internal::SectorPoint findSectorPoint(internal::BasePolygon const &polygon, Point place,
+                                      int &sector) {
+    auto const [centerU, centerV] = polygon.GetCenter();
+    Point const fromCenter = place - Point{centerU, centerV};
+    internal::SectorPoint best;
+    for (int i = 0; i < polygon.GetSize(); ++i) {
+        auto const [startU, startV] = polygon.GetCorner(i);
+        auto const [endU, endV] = polygon.GetCorner((i + 1) % polygon.GetSize());
+        Point const start = {startU, startV};
+        Point const end = {endU, endV};
+        double const determinant = cross(start, end);
+        internal::SectorPoint const point = {cross(fromCenter, end) / determinant,
+                                             cross(start, fromCenter) / determinant};
+        if (i == 0 || std::min(point.a, point.b) > std::min(best.a, best.b)) {
+            best = point;
+            sector = i;
+        }
+    }
+    return best;
+}
+
 // Newton's method: the quadrilaterals are convex, and not far from parallelograms.
 void invert(std::array<double, 8> const &q, Point place, double &s, double &t) {
     auto const at = [&](std::size_t i) { return Point{q[2 * i], q[2 * i + 1]}; };
@@ -163,7 +187,8 @@ private:
                     level.GetFaceBaseFace(cell.face, cell.half),
                     {}};
         std::vector<double> uv(2 * std::size_t(size));
-        level.GetFaceSurfaceCoords(cell.face, cell.half, uv.data());
+        internal::FindBaseCoords(_mesh, _surfaceLevel, level.GetDepth(), {cell.face, cell.half},
+                                 internal::CoordsOf::Plane, uv.data());
         // Of a hexagon in two faces there are the vertices of the half alone.
         bool const isWhole =
             HasHalves(size) && level.GetFaceSurfaceFace(cell.face, 1 - cell.half) == patch.face;
@@ -256,8 +281,11 @@ auto PatchMap::FindPlace(Index face, double u, double v) const -> Place {
     if (face < 0 || face >= GetNumFaces() || !std::isfinite(u) || !std::isfinite(v)) {
         return place;
     }
-    Point const wanted = {u, v};
-    Polygon cell = makeFace(_faceSizes[std::size_t(face)]);
+    int const faceSize = _faceSizes[std::size_t(face)];
+    auto const coords =
+        internal::FindInPlane(internal::MakeFaceParameterization(faceSize), {u, v}).coords;
+    Point const wanted = {coords[0], coords[1]};
+    Polygon cell = makeFace(faceSize);
     Node node = _roots[std::size_t(face)];
     while (node.firstChild != Far::INDEX_INVALID) {
         Polygon child;
@@ -285,8 +313,16 @@ auto PatchMap::FindPlace(Index face, double u, double v) const -> Place {
 
 void PatchMap::GetFacePlace(Place const &place, double *u, double *v) const {
     Point const point = evaluate(GetCoords(place.patch), place.s, place.t);
-    *u = point.u;
-    *v = point.v;
+    int const size = _faceSizes[std::size_t(GetFace(place.patch))];
+    double uv[2] = {point.u, point.v};
+    if (internal::MakeFaceParameterization(size).HasSubFaces()) {
+        int sector = 0;
+        internal::SectorPoint const inSector =
+            findSectorPoint(internal::BasePolygon(size), point, sector);
+        internal::WriteFaceCoords(size, sector, inSector, uv);
+    }
+    *u = uv[0];
+    *v = uv[1];
 }
 
 } // namespace OpenSubdivHex::FarExt

@@ -13,9 +13,9 @@ namespace OpenSubdivHex::FarExt {
 /// a face is: what Far::PatchMap is to ptex faces.
 ///
 /// Places are those of the *surface level* (HexSchemeOptions::GetSurfaceLevel(): level 0, or 1 behind a first
-/// step), in the plane of TopologyLevel::GetFaceSurfaceCoords(): a face there is a regular polygon with sides 1
-/// long, whose edge 0 runs from (0, 0) to (1, 0); of a quad the unit square.  A patch is a quadrilateral in
-/// that plane, and (s, t) in it are bilinear.
+/// step), by (u, v) of its parameterization, as TopologyLevel::GetFaceSurfaceCoords() has them and as
+/// Bfr::Parameterization does.  A patch is a quadrilateral in the plane of TopologyLevel::GetFaceBaseCoords(), and
+/// (s, t) in it are bilinear.
 ///
 /// Nothing refers to the refiner afterwards.  Several threads may use it at once.
 class OPENSUBDIVHEX_API PatchMap {
@@ -45,7 +45,7 @@ public:
     Index GetFace(Index patch) const { return _patches[std::size_t(patch)].face; }
     /// The face of level 0, as TopologyLevel::GetFaceBaseFace(): of its material, or of its texture.
     Index GetBaseFace(Index patch) const { return _patches[std::size_t(patch)].baseFace; }
-    /// The places of the four corners in the face: u, v of each.
+    /// The four corners in the plane of the face: two coordinates of each.
     std::array<double, 8> const &GetCoords(Index patch) const {
         return _patches[std::size_t(patch)].coords;
     }

@@ -275,11 +275,13 @@ bool TopologyLevel::IsFaceBaseSplit(Index f) const {
 }
 
 bool TopologyLevel::GetFaceBaseCoords(Index f, int half, float *uv) const {
-    return internal::FindBaseCoords(_hierarchy->mesh, 0, _depth, {f, half}, uv);
+    return internal::FindBaseCoords(_hierarchy->mesh, 0, _depth, {f, half},
+                                    internal::CoordsOf::Plane, uv);
 }
 
 bool TopologyLevel::GetFaceBaseCoords(Index f, int half, double *uv) const {
-    return internal::FindBaseCoords(_hierarchy->mesh, 0, _depth, {f, half}, uv);
+    return internal::FindBaseCoords(_hierarchy->mesh, 0, _depth, {f, half},
+                                    internal::CoordsOf::Plane, uv);
 }
 
 Index TopologyLevel::GetFaceSurfaceFace(Index f, int half) const {
@@ -288,12 +290,12 @@ Index TopologyLevel::GetFaceSurfaceFace(Index f, int half) const {
 
 bool TopologyLevel::GetFaceSurfaceCoords(Index f, int half, float *uv) const {
     return internal::FindBaseCoords(_hierarchy->mesh, _hierarchy->surfaceLevel, _depth, {f, half},
-                                    uv);
+                                    internal::CoordsOf::Parameterization, uv);
 }
 
 bool TopologyLevel::GetFaceSurfaceCoords(Index f, int half, double *uv) const {
     return internal::FindBaseCoords(_hierarchy->mesh, _hierarchy->surfaceLevel, _depth, {f, half},
-                                    uv);
+                                    internal::CoordsOf::Parameterization, uv);
 }
 
 auto TopologyLevel::GetFaceChildFaces(Index f) const -> ChildFaceArray {

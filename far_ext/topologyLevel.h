@@ -241,10 +241,11 @@ public:
     /// Whether the halves of the face, a hexagon then, lie in two faces of level 0.
     bool IsFaceBaseSplit(Index f) const;
 
-    /// \brief The places of vertices of the face in the parameter plane of its base face.
+    /// \brief The places of vertices of the face in a plane of its base face, in which pictures can be drawn.
     ///
-    /// There the base face is a regular polygon with sides 1 long, counter-clockwise, whose edge 0
-    /// runs from (0, 0) to (1, 0): of a quad the unit square.  V-vertices stay, and an F-vertex is
+    /// The plane has edge 0 of the base face from (0, 0) to (1, 0), and the face to its left: a quad is the unit
+    /// square, a triangle has its third vertex at (0, 1), and others are regular polygons.  V-vertices stay, and
+    /// an F-vertex is
     /// the middle between its vertex and the centre: of the base face that of the polygon, of half a
     /// hexagon the middle of its long edge; so the children of each are affine images of it or of
     /// its halves, and tile it.  (Of a quad at a boundary that follows the paper's rule the centre is
@@ -267,11 +268,16 @@ public:
     /// \return      INDEX_INVALID before the surface level, and where not all steps behind it are
     ///              hexagonal
     Index GetFaceSurfaceFace(Index f, int half = 0) const;
-    /// \brief As GetFaceBaseCoords(), in the parameter plane of that face: where its surface has the
-    /// limits of the face's vertices.
+    /// \brief The places of the face's vertices in that face, by (u, v) of its parameterization: where its surface
+    /// has their limits.
+    ///
+    /// Those are the coordinates of Bfr::Parameterization.  In triangles and quads they are those of
+    /// GetFaceBaseCoords() in that face; others have a sub-face for each corner, the kite of the corner, the middles
+    /// of two edges and the centre, in which places are bilinear.  A place between two sub-faces is in the second of
+    /// them.
     ///
     /// \param half  of a face that lies in two, the half that is meant
-    /// \param uv    gets u and v of each vertex, as there
+    /// \param uv    gets u and v of each vertex, in the order of GetFaceBaseCoords()
     /// \return      false, and \p uv is not written, where there is no such face
     bool GetFaceSurfaceCoords(Index f, int half, float *uv) const;
     /// \copydoc GetFaceSurfaceCoords(Index, int, float *) const

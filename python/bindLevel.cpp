@@ -320,9 +320,9 @@ void bindParents(py::class_<Level> &level) {
              py::arg("half") = 0)
         .def("get_face_base_coords", &getBaseCoords,
              "get_face_base_coords(half=0)\n\nWhere the corners of each face lie in its base face, "
-             "or in that of a half: u and v in\na regular polygon, whose first edge runs from (0, "
-             "0) "
-             "to (1, 0), of a quad the unit\nsquare.  float32, shape (corners, 2); nan at the two "
+             "or in that of a half, in\na plane: a quad is the unit square, a triangle has the "
+             "corners (0, 0), (1, 0) and\n(0, 1), others are regular polygons with the first edge "
+             "from (0, 0) to (1, 0).\nfloat32, shape (corners, 2); nan at the two "
              "corners of a face with two base\nfaces that the half does not have: half 0 has 0, 3, "
              "4, 5, half 1 has 3, 0, 1, 2.\nRaises ValueError behind other than hexagonal steps.",
              py::arg("half") = 0)
@@ -333,8 +333,9 @@ void bindParents(py::class_<Level> &level) {
              "hexagonal steps.",
              py::arg("half") = 0)
         .def("get_face_surface_coords", &getSurfaceCoords,
-             "get_face_surface_coords(half=0)\n\nAs get_face_base_coords, in that face: where its "
-             "surface has the limits of the\nvertices.  Raises ValueError as "
+             "get_face_surface_coords(half=0)\n\nAs get_face_base_coords, by u and v of that face: "
+             "where its surface has the limits of\nthe vertices.  Faces of five and more vertices "
+             "have a sub-face for each corner, as in\nOpenSubdiv's Bfr.  Raises ValueError as "
              "get_face_surface_faces.",
              py::arg("half") = 0)
         .def("is_face_base_split", makeMask(faces, false, &TopologyLevel::IsFaceBaseSplit),

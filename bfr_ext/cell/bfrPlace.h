@@ -4,32 +4,23 @@
 
 #include "cellStencil.h"
 
-#include <opensubdiv/bfr/parameterization.h>
+#include "far_ext/vtr/faceCoords.h"
 
 namespace OpenSubdivHex::BfrExt::internal {
 
 namespace Bfr = OpenSubdiv::Bfr;
-
-/// A place in the parameter plane, and the derivatives of its coordinates by Bfr's u and v.
-struct PlanePlace {
-    Pair uv;
-    Pair byU;
-    Pair byV;
-};
-/// \brief Where (u, v) of a valid parameterization of Bfr, which are finite, lie in the parameter plane of the face.
-///
-/// This has the face as a regular polygon: a linear map takes a triangle of Bfr there, a bilinear one each
-/// sub-face, whose image is the kite of a corner, the centre of the face, and the middles of two edges between them.
-PlanePlace FindInPlane(Bfr::Parameterization const &parameterization, Pair const &uv);
+using FarExt::internal::PlanePlace;
 
 /// A place of a base face, or of a child of it, given by (u, v) of one of Bfr's parameterizations of the face.
 struct BfrPlace {
     BasePoint point;
-    /// By coordinate by which CellStencil finds derivatives, the derivatives of it by Bfr's u and v.
+    /// By coordinate by which CellStencil finds derivatives, the derivatives of it by u and v.
     Pair toOwn[2];
+    Pair mixed; ///< and its second derivatives by both; of a base face
 };
 
-/// \brief Finds a place inside of a face.
+/// \brief Finds a place of a base face; of one outside, where the line from the centre to it leaves the face.  Its
+/// coordinates are not numbers where u or v is none.
 ///
 /// \param parameterization  a valid one
 /// \param tolerance         that of FindBasePoint()
@@ -42,6 +33,32 @@ BfrPlace MakeBfrEdgePlace(Bfr::Parameterization const &parameterization, int edg
 
 /// The same place in the child that has it.
 BfrPlace MoveToChild(BfrPlace const &place, CellStep const &step, int faceSize);
+
+/// \brief Turns derivatives by the coordinates of the plane of a base face into those by u and v, number by number.
+///
+/// \param first   two rows
+/// \param second  null, or three rows: of the first coordinate twice, of both, and of the second twice
+template <typename REAL>
+void ToUv(BfrPlace const &place, std::size_t size, REAL *const first[2], REAL *const second[3]) {
+    auto const &[x, y] = place.toOwn;
+    for (std::size_t i = 0; i < size; ++i) {
+        double const by[2] = {double(first[0][i]), double(first[1][i])};
+        for (std::size_t k = 0; k < 2; ++k) {
+            first[k][i] = REAL(x[k] * by[0] + y[k] * by[1]);
+        }
+        if (second) {
+            double const twice[3] = {double(second[0][i]), double(second[1][i]),
+                                     double(second[2][i])};
+            auto const change = [&](std::size_t k, std::size_t l) {
+                return x[k] * x[l] * twice[0] + (x[k] * y[l] + y[k] * x[l]) * twice[1] +
+                       y[k] * y[l] * twice[2];
+            };
+            second[0][i] = REAL(change(0, 0));
+            second[1][i] = REAL(change(0, 1) + place.mixed[0] * by[0] + place.mixed[1] * by[1]);
+            second[2][i] = REAL(change(1, 1));
+        }
+    }
+}
 
 } // namespace OpenSubdivHex::BfrExt::internal
 

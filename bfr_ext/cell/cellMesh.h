@@ -10,7 +10,7 @@
 
 namespace OpenSubdivHex::BfrExt::internal {
 
-/// \brief A base face cut into the cells of a tree that are not refined further, in its parameter plane.
+/// \brief A base face cut into the cells of a tree that are not refined further, in its plane.
 ///
 /// A place is enough to know a vertex by, and cells that meet smaller ones find their vertices on their own
 /// sides.

@@ -9,7 +9,7 @@
 
 namespace OpenSubdivHex::BfrExt::internal {
 
-/// \brief Where a cell of a tree lies in the parameter plane of its base face.
+/// \brief Where a cell of a tree lies in the plane of its base face.
 ///
 /// All lines are straight there: half cells are trapezoids, and what an edge becomes lies on it.
 struct CellShape {

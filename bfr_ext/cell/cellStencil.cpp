@@ -55,7 +55,7 @@ void makeSectorMap(BasePolygon const &polygon, int sector, Pair (&rows)[2]) {
     rows[1] = {-start[1] / determinant, start[0] / determinant};
 }
 
-// The parameter plane of a face of a common size: places are found in it by the million.
+// The plane of a face of a common size: places are found in it by the million.
 struct KnownPolygon {
     static constexpr int kMaxSize = 8;
 

@@ -18,7 +18,7 @@ struct BasePoint {
     bool IsOnBorder() const { return coords[0] + coords[1] == 1; }
 };
 
-/// \brief Finds a point of the parameter plane in a base face of \p size sides, or where the line from the
+/// \brief Finds a point of the plane of a base face of \p size sides, or where the line from the
 /// centre to it leaves the face.  Its coordinates are not numbers where u or v is none.
 ///
 /// \param tolerance  of coordinates: those that are so close to a multiple of a small power of 1/2, as
@@ -50,7 +50,8 @@ enum class StencilOf {
     Step    ///< what the step of the type makes, by row of CellType::GetStep()
 };
 
-/// \brief The stencils of points of a base face and of their derivatives by u and v.
+/// \brief The stencils of points of a base face and of their derivatives by u and v, which are the coordinates of its
+/// plane here.
 ///
 /// The cells that have a point are followed until it is a corner of one, or they are so small that
 /// the surface between their corners is bilinear as far as anyone sees.
@@ -82,7 +83,7 @@ private:
         int FindCorner() const;
         // Finds how much the corners weigh between which it is.
         void FindCornerWeights(std::vector<double> &weights) const;
-        // The corners in the parameter plane, from the mean of all.
+        // The corners in the plane of the face, from the mean of all.
         std::vector<Pair> FindCornersInPlane() const;
         // Adds the derivatives by u and v at a corner, from those by its coordinates.
         void AddDerivatives(std::size_t corner, double weight,

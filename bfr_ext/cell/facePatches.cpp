@@ -177,20 +177,35 @@ int GetNumFacePatches(int size, int level) {
 
 namespace {
 
-// The coordinates in a cell that has a place, and what they are in terms of those in the sector.
+// The coordinates in a cell that has a place, and their derivatives by u and v.
 struct CellPlace {
+    explicit CellPlace(BfrPlace const &place, bool hasSubFaces)
+        : coords(place.point.coords), rows{place.point.toCoords[0], place.point.toCoords[1]} {
+        if (hasSubFaces) {
+            auto const &[x, y] = place.toOwn;
+            for (std::size_t i = 0; i < 2; ++i) {
+                Pair const by = rows[i];
+                rows[i] = {by[0] * x[0] + by[1] * y[0], by[0] * x[1] + by[1] * y[1]};
+                mixed[i] = by[0] * place.mixed[0] + by[1] * place.mixed[1];
+            }
+        }
+    }
+
     void Step(CellMap const &map) {
         coords = map.Apply(coords);
         Pair const before[2] = {rows[0], rows[1]};
+        Pair const mixedBefore = mixed;
         for (std::size_t i = 0; i < 2; ++i) {
             for (std::size_t k = 0; k < 2; ++k) {
                 rows[i][k] = map.rows[i][0] * before[0][k] + map.rows[i][1] * before[1][k];
             }
+            mixed[i] = map.rows[i][0] * mixedBefore[0] + map.rows[i][1] * mixedBefore[1];
         }
     }
 
     Pair coords;
     Pair rows[2];
+    Pair mixed = {0, 0}; // by both
 };
 
 // From the coordinates in the sector of a whole cell to those that the shape of its patches is given by: the
@@ -226,8 +241,9 @@ Quadrilateral findInWhole(int size, int sector, CellPlace &place, int &patch) {
 
 } // namespace
 
-PatchPlace FindPatchPlace(BasePoint const &point, int size, int level, int numDerivatives) {
-    CellPlace cell = {point.coords, {point.toCoords[0], point.toCoords[1]}};
+PatchPlace FindPatchPlace(BfrPlace const &ofFace, int size, int level, int numDerivatives) {
+    BasePoint const &point = ofFace.point;
+    CellPlace cell(ofFace, size > 4);
     int left = level;
     for (; left > 0 && cell.coords[0] + cell.coords[1] <= 0.5; --left) {
         cell.Step(kToFFace);
@@ -272,6 +288,8 @@ PatchPlace FindPatchPlace(BasePoint const &point, int size, int level, int numDe
     for (std::size_t i = 0; i < 3; ++i) {
         place.second[i] = {-bend[0] * products[i], -bend[1] * products[i]};
     }
+    Pair const mixed = solve(cell.mixed[0], cell.mixed[1]);
+    place.second[1] = {place.second[1][0] + mixed[0], place.second[1][1] + mixed[1]};
     return place;
 }
 

@@ -2,7 +2,7 @@
 #ifndef OPENSUBDIVHEX_BFR_EXT_CELL_FACE_PATCHES_H
 #define OPENSUBDIVHEX_BFR_EXT_CELL_FACE_PATCHES_H
 
-#include "cellStencil.h"
+#include "bfrPlace.h"
 
 #include "far_ext/patch/patchBuilder.h"
 
@@ -32,8 +32,9 @@ struct PatchPlace {
     Pair second[3]; ///< of (s, t), by u twice, by u and v, by v twice
 };
 
-/// The place of a point of a base face of \p size sides, with derivatives as far as \p numDerivatives asks: 0, 1 or 2.
-PatchPlace FindPatchPlace(BasePoint const &point, int size, int level, int numDerivatives);
+/// Finds the patch of a place of a base face of \p size sides, with derivatives as far as \p numDerivatives asks:
+/// 0, 1 or 2.
+PatchPlace FindPatchPlace(BfrPlace const &place, int size, int level, int numDerivatives);
 
 /// \brief Makes the points of all patches of a face from its control points.
 ///

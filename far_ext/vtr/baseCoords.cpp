@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "baseCoords.h"
 
-#include "basePolygon.h"
+#include "faceCoords.h"
 
 #include <array>
 
@@ -98,21 +98,29 @@ Index FindBaseFace(MeshLevels const &mesh, int baseDepth, int depth, Cell cell) 
 }
 
 template <typename REAL>
-bool FindBaseCoords(MeshLevels const &mesh, int baseDepth, int depth, Cell cell, REAL *uv) {
+bool FindBaseCoords(MeshLevels const &mesh, int baseDepth, int depth, Cell cell, CoordsOf coordsOf,
+                    REAL *uv) {
     if (!areHexagonal(mesh, baseDepth, depth)) {
         return false;
     }
     PlacedCell const placed = place(mesh, baseDepth, depth, cell);
-    BasePolygon const polygon(mesh.levels[std::size_t(baseDepth)].GetFaceSize(placed.baseFace));
+    int const size = mesh.levels[std::size_t(baseDepth)].GetFaceSize(placed.baseFace);
+    auto const writePoint = [&](int sector, SectorPoint point, REAL *at) {
+        if (coordsOf == CoordsOf::Plane) {
+            BasePolygon(size).Write(sector, point, at);
+        } else {
+            WriteFaceCoords(size, sector, point, at);
+        }
+    };
     if (placed.sector < 0) {
-        for (int i = 0; i < polygon.GetSize(); ++i) {
-            polygon.Write(i, {placed.scale, 0}, uv + 2 * i);
+        for (int i = 0; i < size; ++i) {
+            writePoint(i, {placed.scale, 0}, uv + 2 * i);
         }
         return true;
     }
     auto const write = [&](PlacedCell const &half, int const(&places)[kNumHalfCorners]) {
         for (int i = 0; i < kNumHalfCorners; ++i) {
-            polygon.Write(half.sector, half.quad.corners[i], uv + 2 * places[i]);
+            writePoint(half.sector, half.quad.corners[i], uv + 2 * places[i]);
         }
     };
     if (HasHalves(mesh.levels[std::size_t(depth)].GetFaceSize(cell.face))) {
@@ -127,7 +135,7 @@ bool FindBaseCoords(MeshLevels const &mesh, int baseDepth, int depth, Cell cell,
     return true;
 }
 
-template bool FindBaseCoords(MeshLevels const &, int, int, Cell, float *);
-template bool FindBaseCoords(MeshLevels const &, int, int, Cell, double *);
+template bool FindBaseCoords(MeshLevels const &, int, int, Cell, CoordsOf, float *);
+template bool FindBaseCoords(MeshLevels const &, int, int, Cell, CoordsOf, double *);
 
 } // namespace OpenSubdivHex::FarExt::internal

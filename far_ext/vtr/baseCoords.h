@@ -6,14 +6,21 @@
 
 namespace OpenSubdivHex::FarExt::internal {
 
-/// \brief The places of the vertices of a cell of level \p depth in the parameter plane of its face of
-/// level \p baseDepth: see TopologyLevel::GetFaceBaseCoords.
+/// What places in a face are told by.
+enum class CoordsOf {
+    Plane,           ///< that of BasePolygon
+    Parameterization ///< that of MakeFaceParameterization()
+};
+
+/// \brief The places of the vertices of a cell of level \p depth in its face of level \p baseDepth: see
+/// TopologyLevel::GetFaceBaseCoords.
 ///
 /// \param cell  of a face that lies in one such face all of that is meant
-/// \param uv    gets u and v of each vertex
+/// \param uv    gets two coordinates of each vertex
 /// \return      false when a step from that level on was not hexagonal, or it comes later
 template <typename REAL>
-bool FindBaseCoords(MeshLevels const &mesh, int baseDepth, int depth, Cell cell, REAL *uv);
+bool FindBaseCoords(MeshLevels const &mesh, int baseDepth, int depth, Cell cell, CoordsOf coordsOf,
+                    REAL *uv);
 /// That face; INDEX_INVALID where FindBaseCoords() is false.
 Far::Index FindBaseFace(MeshLevels const &mesh, int baseDepth, int depth, Cell cell);
 

@@ -17,30 +17,47 @@ struct SectorPoint {
     double b = 0;
 };
 
-/// \brief A base face in its parameter plane: a regular polygon with sides 1 long, counter-clockwise,
-/// edge 0 from (0, 0) to (1, 0).
+/// \brief A base face in its plane, counter-clockwise, edge 0 from (0, 0) to (1, 0): a triangle has its third corner
+/// at (0, 1), a quad is the unit square, others are regular polygons.
 class BasePolygon {
 public:
+    using Pair = std::array<double, 2>;
+
     explicit BasePolygon(int size)
         : _size(size), _radius(0.5 / std::sin(kPi / size)),
-          _centerY(size == 4 ? 0.5 : 0.5 / std::tan(kPi / size)) {}
+          _center(size == 3   ? Pair{kThird, kThird}
+                  : size == 4 ? Pair{0.5, 0.5}
+                              : Pair{0.5, 0.5 / std::tan(kPi / size)}) {}
 
     int GetSize() const { return _size; }
 
     template <typename REAL>
     void Write(int sector, SectorPoint point, REAL *uv) const {
-        std::array<double, 2> const start = GetCorner(sector);
-        std::array<double, 2> const end = GetCorner((sector + 1) % _size);
-        uv[0] = REAL(0.5 + (point.a * start[0] + point.b * end[0]));
-        uv[1] = REAL(_centerY + (point.a * start[1] + point.b * end[1]));
+        if (_size == 3) {
+            // Without rounding on the border.
+            double const ofAll = (1 - point.a - point.b) * kThird;
+            double weights[3] = {ofAll, ofAll, ofAll};
+            weights[sector] += point.a;
+            weights[(sector + 1) % 3] += point.b;
+            uv[0] = REAL(weights[1]);
+            uv[1] = REAL(weights[2]);
+            return;
+        }
+        Pair const start = GetCorner(sector);
+        Pair const end = GetCorner((sector + 1) % _size);
+        uv[0] = REAL(_center[0] + (point.a * start[0] + point.b * end[0]));
+        uv[1] = REAL(_center[1] + (point.a * start[1] + point.b * end[1]));
     }
 
-    std::array<double, 2> GetCenter() const { return {0.5, _centerY}; }
+    Pair GetCenter() const { return _center; }
 
     /// Corner number i, from the centre.
-    std::array<double, 2> GetCorner(int i) const {
+    Pair GetCorner(int i) const {
+        if (_size == 3) {
+            return {i == 1 ? 2 * kThird : -kThird, i == 2 ? 2 * kThird : -kThird};
+        }
         if (i <= 1) {
-            return {i - 0.5, -_centerY};
+            return {i - 0.5, -_center[1]};
         }
         if (_size == 4) {
             return {i == 2 ? 0.5 : -0.5, 0.5};
@@ -50,9 +67,11 @@ public:
     }
 
 private:
+    static constexpr double kThird = 1.0 / 3;
+
     int const _size;
     double const _radius;
-    double const _centerY;
+    Pair const _center;
 };
 
 } // namespace OpenSubdivHex::FarExt::internal

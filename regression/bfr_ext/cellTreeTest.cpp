@@ -2,6 +2,7 @@
 //
 // Trees of cells, against books that are kept of every line, and their tessellations of whole meshes.
 #include "cellFixture.h"
+#include "facePlaces.h"
 #include "surfaceCase.h"
 #include "surfaceFixture.h"
 #include "turnedFacets.h"
@@ -315,6 +316,7 @@ void expectReference(Shape const &shape, unsigned seed) {
         LevelTessellation const &tessellation = mesh.tessellations[std::size_t(face)];
         std::vector<double> coords(2 * std::size_t(tessellation.GetNumCoords()));
         tessellation.GetCoords(coords.data());
+        coords = ToPlane(tessellation.GetFaceSize(), coords);
         std::multiset<PlacePolygon> polygons;
         for (std::vector<int> const &facet : GetFacets(tessellation)) {
             PlacePolygon places;
@@ -411,10 +413,11 @@ struct ForestCounts {
     TurnedFacets triangles;
 };
 
-/// In the parameter plane facets are counter-clockwise and cover the face.
+/// In the plane of the face facets are counter-clockwise and cover it.
 void expectPlaneTiling(LevelTessellation const &tessellation) {
     std::vector<double> coords(2 * std::size_t(tessellation.GetNumCoords()));
     tessellation.GetCoords(coords.data());
+    coords = ToPlane(tessellation.GetFaceSize(), coords);
     auto const getArea = [&](std::vector<int> const &polygon) {
         double sum = 0;
         for (std::size_t i = 0; i < polygon.size(); ++i) {

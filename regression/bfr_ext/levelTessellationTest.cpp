@@ -2,6 +2,7 @@
 //
 // Tessellations alone, in the parameter plane, and of neighbours, which share points to the bit.
 #include "cellFixture.h"
+#include "facePlaces.h"
 #include "facets.h"
 #include "surfaceFixture.h"
 
@@ -52,7 +53,8 @@ double getArea(std::vector<int> const &polygon, std::vector<double> const &coord
 
 /// The facets tile the face: all are counter-clockwise, meet edge to edge, and leave nothing.
 void expectTiling(LevelTessellation const &tessellation, double leastArea = 1e-9) {
-    std::vector<double> const coords = getCoords(tessellation);
+    int const size = tessellation.GetFaceSize();
+    std::vector<double> const coords = ToPlane(size, getCoords(tessellation));
     std::map<std::pair<int, int>, int> sides;
     std::set<int> used;
     double area = 0;
@@ -79,12 +81,12 @@ void expectTiling(LevelTessellation const &tessellation, double leastArea = 1e-9
     ASSERT_EQ(numOpen, numBoundary);
     std::vector<int> corners;
     std::vector<double> cornerCoords;
-    for (int i = 0; i < tessellation.GetFaceSize(); ++i) {
+    for (int i = 0; i < size; ++i) {
         corners.push_back(i);
         cornerCoords.resize(cornerCoords.size() + 2);
         tessellation.GetVertexCoord(i, &cornerCoords[2 * std::size_t(i)]);
     }
-    ASSERT_NEAR(area, getArea(corners, cornerCoords), 1e-9);
+    ASSERT_NEAR(area, getArea(corners, ToPlane(size, cornerCoords)), 1e-9);
 }
 
 } // namespace
@@ -154,7 +156,7 @@ TEST(LevelTessellation, UniformOnesAreRefinedPolygons) {
             std::set<Polygon> expected;
             for (int face = 0; face < refined.GetNumFaces(); ++face) {
                 std::vector<double> uv(2 * std::size_t(refined.GetFaceVertices(face).size()));
-                ASSERT_TRUE(refined.GetFaceBaseCoords(face, 0, uv.data()));
+                ASSERT_TRUE(refined.GetFaceSurfaceCoords(face, 0, uv.data()));
                 Polygon polygon;
                 for (std::size_t i = 0; i < uv.size(); i += 2) {
                     polygon.insert(round(uv[i], uv[i + 1]));

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // Tessellations of Bfr, with rates: of faces alone, and of neighbours, which share points to the bit.
+#include "facePlaces.h"
+
+#include "bfr_ext/cell/bfrPlace.h"
 #include "surfaceFixture.h"
 
 #include "regression/far_ext/referenceMatch.h"
@@ -83,7 +86,7 @@ void expectWelded(FarExt::TopologyRefiner const &refiner, std::vector<REAL> cons
         }
         Surface<REAL> const &surface = surfaces[face];
         Bfr::Tessellation const tessellation(
-            surface.GetParameterization().GetBfr(), int(rates.size()), rates.data(),
+            surface.GetParameterization(), int(rates.size()), rates.data(),
             Bfr::Tessellation::Options().SetFacetSize(facetSize).PreserveQuads(facetSize == 4));
         ASSERT_TRUE(tessellation.IsValid());
         std::vector<REAL> const points =
@@ -135,86 +138,100 @@ void expectWelded(Shape const &shape, ReferenceMask mask, Sdc::Options const &op
 
 } // namespace
 
-TEST(Rates, ParameterizationsAreThoseOfBfr) {
-    EXPECT_EQ(Parameterization(3).GetBfr().GetType(), Bfr::Parameterization::TRI);
-    EXPECT_EQ(Parameterization(4).GetBfr().GetType(), Bfr::Parameterization::QUAD);
-    EXPECT_EQ(Parameterization(7).GetBfr().GetType(), Bfr::Parameterization::QUAD_SUBFACES);
-    EXPECT_FALSE(Parameterization().GetBfr().IsValid());
-    std::vector<Bfr::Parameterization> all = {{OpenSubdiv::Sdc::SCHEME_CATMARK, 3}};
+TEST(Parameterization, IsThatOfBfr) {
+    EXPECT_EQ(Parameterization(3).GetType(), Bfr::Parameterization::TRI);
+    EXPECT_EQ(Parameterization(4).GetType(), Bfr::Parameterization::QUAD);
+    EXPECT_EQ(Parameterization(7).GetType(), Bfr::Parameterization::QUAD_SUBFACES);
+    EXPECT_FALSE(Parameterization().IsValid());
+    EXPECT_FALSE(Parameterization(2).IsValid());
     for (int size = 3; size <= 12; ++size) {
-        all.push_back(Parameterization(size).GetBfr());
-    }
-    for (Bfr::Parameterization const &bfr : all) {
-        int const size = bfr.GetFaceSize();
-        SCOPED_TRACE(testing::Message() << size << " vertices, type " << bfr.GetType());
-        Parameterization const own(size);
-        double uv[2];
-        double expected[2];
-        auto const expectSame = [&] {
-            Parameterization::ConvertFromBfr(bfr, uv, uv);
-            EXPECT_NEAR(uv[0], expected[0], 1e-14);
-            EXPECT_NEAR(uv[1], expected[1], 1e-14);
-        };
-        bfr.GetCenterCoord(uv);
-        own.GetCenterCoord(expected);
-        // Bfr has a third in single precision.
-        EXPECT_NEAR(bfr.GetType() == Bfr::Parameterization::TRI ? uv[0] : 1.0 / 3, 1.0 / 3, 1e-7);
-        if (bfr.GetType() == Bfr::Parameterization::TRI) {
-            uv[0] = uv[1] = 1.0 / 3;
-        }
-        expectSame();
+        SCOPED_TRACE(size);
+        Parameterization const parameterization(size);
+        FacePlace uv;
+        parameterization.GetCenterCoord(uv.data());
+        FacePlace const center = MakeFacePlace(size, 0, 0, 0);
+        EXPECT_NEAR(uv[0], center[0], 1e-7); // Bfr has a third in single precision
+        EXPECT_NEAR(uv[1], center[1], 1e-7);
         for (int edge = 0; edge < size; ++edge) {
-            for (double const t : {0.0, 0.25, 0.4, 0.5, 0.75, 1.0}) {
-                bfr.GetEdgeCoord(edge, t, uv);
-                own.GetEdgeCoord(edge, t, expected);
-                expectSame();
+            for (double const t : {0.0, 0.25, 0.375, 0.5, 0.75}) {
+                parameterization.GetEdgeCoord(edge, t, uv.data());
+                EXPECT_EQ(MakeFacePlace(size, edge, 1 - t, t), uv) << edge << " " << t;
             }
         }
     }
 }
 
-TEST(Rates, ConversionsHaveTheirDerivatives) {
+// A point between two sub-faces is in one of them from both sectors, and the plane is divided as the face is.
+TEST(Parameterization, LeadsToThePlaneAndBack) {
+    std::mt19937 random(11);
+    std::uniform_real_distribution<double> share(0, 1);
+    for (int size = 3; size <= 12; ++size) {
+        for (int i = 0; i < 100; ++i) {
+            int const sector = i % size;
+            double const sum = i % 7 == 0 ? 1 : share(random);
+            double const toEnd = sum * (i % 5 == 0 ? 0.5 : share(random));
+            FacePlace const uv = MakeFacePlace(size, sector, sum - toEnd, toEnd);
+            FacePlace const inPlane = ToPlane(size, uv.data());
+            FacePlace const corners[2] = {ToPlane(size, MakeFacePlace(size, sector, 1, 0).data()),
+                                          ToPlane(size, MakeFacePlace(size, sector, 0, 1).data())};
+            FacePlace const center = ToPlane(size, MakeFacePlace(size, 0, 0, 0).data());
+            for (std::size_t k = 0; k < 2; ++k) {
+                EXPECT_NEAR(inPlane[k],
+                            center[k] + (sum - toEnd) * (corners[0][k] - center[k]) +
+                                toEnd * (corners[1][k] - center[k]),
+                            1e-13)
+                    << size;
+            }
+        }
+        EXPECT_EQ(MakeFacePlace(size, 0, 0, 0.25), MakeFacePlace(size, 1, 0.25, 0));
+    }
+}
+
+TEST(Parameterization, HasItsDerivativesInThePlane) {
     constexpr double kStep = 1e-6;
     for (int const size : {3, 4, 5, 6, 11}) {
         for (int const type : {0, 1}) {
-            Bfr::Parameterization const bfr =
-                type == 0 ? Parameterization(size).GetBfr()
+            Bfr::Parameterization const parameterization =
+                type == 0 ? Parameterization(size)
                           : Bfr::Parameterization(OpenSubdiv::Sdc::SCHEME_CATMARK, size);
-            Bfr::Tessellation const tessellation(bfr, 7);
+            Bfr::Tessellation const tessellation(parameterization, 7);
             std::vector<double> coords = getCoords<double>(tessellation);
             for (std::size_t i = 0; i < coords.size(); i += 2) {
-                double uv[2];
-                double derivatives[4];
-                Parameterization::ConvertFromBfr(bfr, &coords[i], uv, derivatives);
+                auto const find = [&](double toU, double toV) {
+                    return FarExt::internal::FindInPlane(parameterization,
+                                                         {coords[i] + toU, coords[i + 1] + toV});
+                };
+                auto const at = find(0, 0);
                 for (std::size_t k = 0; k < 2; ++k) {
-                    double near[2] = {coords[i], coords[i + 1]};
-                    near[k] += kStep;
-                    Parameterization::ConvertFromBfr(bfr, near, near);
-                    EXPECT_NEAR((near[0] - uv[0]) / kStep, derivatives[2 * k], 1e-8);
-                    EXPECT_NEAR((near[1] - uv[1]) / kStep, derivatives[2 * k + 1], 1e-8);
+                    EXPECT_NEAR((find(kStep, 0).coords[k] - at.coords[k]) / kStep, at.byU[k], 1e-8);
+                    EXPECT_NEAR((find(0, kStep).coords[k] - at.coords[k]) / kStep, at.byV[k], 1e-8);
+                    EXPECT_NEAR((find(kStep, 0).byV[k] - at.byV[k]) / kStep, at.byUv[k], 1e-8);
+                    EXPECT_NEAR((find(0, kStep).byU[k] - at.byU[k]) / kStep, at.byUv[k], 1e-8);
                 }
                 // No side is turned over.
-                EXPECT_GT(derivatives[0] * derivatives[3] - derivatives[1] * derivatives[2], 0.1);
+                EXPECT_GT(at.byU[0] * at.byV[1] - at.byU[1] * at.byV[0], 0.1);
             }
         }
     }
 }
 
-TEST(Rates, CoordinatesThatAreNoneConvertToNone) {
+// Of sub-faces, too.
+TEST(Parameterization, TakesPlacesOutsideToTheBoundaryAndNoneForNone) {
     constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
     constexpr double kInfinite = std::numeric_limits<double>::infinity();
-    for (auto const &[bfr, u, v] : {std::make_tuple(Parameterization(5).GetBfr(), kNan, 0.0),
-                                    std::make_tuple(Parameterization(5).GetBfr(), 0.0, kInfinite),
-                                    std::make_tuple(Bfr::Parameterization(), 0.5, 0.5)}) {
-        double uv[2] = {u, v};
-        double derivatives[4];
-        Parameterization::ConvertFromBfr(bfr, uv, uv, derivatives);
-        EXPECT_TRUE(std::isnan(uv[0]) && std::isnan(uv[1]) && std::isnan(derivatives[3]));
+    for (int const size : {3, 4, 5, 7}) {
+        Parameterization const parameterization(size);
+        for (double const far : {5.0, 1e300, kInfinite}) {
+            for (FacePlace const &uv : {FacePlace{far, 0.2}, {-far, far}, {0.1, -far}}) {
+                auto const place = BfrExt::internal::FindBfrPlace(parameterization, uv, 0);
+                EXPECT_TRUE(place.point.IsOnBorder()) << size << " " << uv[0] << " " << uv[1];
+            }
+        }
+        for (FacePlace const &uv : {FacePlace{kNan, 0.2}, {0.2, kNan}}) {
+            auto const place = BfrExt::internal::FindBfrPlace(parameterization, uv, 0);
+            EXPECT_TRUE(std::isnan(place.point.coords[0] + place.point.coords[1])) << size;
+        }
     }
-    double const outside[2] = {1e300, -1e300};
-    double uv[2];
-    Parameterization::ConvertFromBfr(Parameterization(7).GetBfr(), outside, uv);
-    EXPECT_TRUE(std::isfinite(uv[0]) && std::isfinite(uv[1]));
 }
 
 TEST(Rates, NeighboursShareTheirPointsToTheBit) {
@@ -267,7 +284,7 @@ TEST(Rates, PlacesOfEdgesDoNotDependOnRates) {
         for (int face = 0; face < std::min(shape.GetNumFaces(), kMaxFaces); ++face) {
             Surface<double> const &surface = surfaces[face];
             std::vector<double> const control = gather(surface, shape.positions);
-            Bfr::Parameterization const bfr = surface.GetParameterization().GetBfr();
+            Bfr::Parameterization const bfr = surface.GetParameterization();
             auto const evaluateAtRate = [&](int rate) {
                 return evaluate(surface, control, {bfr, rate});
             };
@@ -315,10 +332,16 @@ void expectStencils(Surface<double> const &surface, std::vector<double> const &c
     }
     for (std::size_t i = 0; i < numPlaces; i += step) {
         SCOPED_TRACE(testing::Message() << "place " << coords[2 * i] << " " << coords[2 * i + 1]);
-        double uv[2];
-        double d[4];
-        Parameterization::ConvertFromBfr(tessellation.GetParameterization(), &coords[2 * i], uv, d);
-        surface.EvaluateStencil(uv, stencils[0].data(), stencils[1].data(), stencils[2].data());
+        // Of a triangle in sub-faces, (u, v) are its own where these lie in its plane.
+        bool const isOther =
+            surface.GetFaceSize() == 3 && tessellation.GetParameterization().HasSubFaces();
+        FacePlace const given = {coords[2 * i], coords[2 * i + 1]};
+        auto const [uv, byU, byV, byUv] =
+            isOther ? FarExt::internal::FindInPlane(tessellation.GetParameterization(), given)
+                    : FarExt::internal::PlanePlace{given, {1, 0}, {0, 1}, {0, 0}};
+        double const d[4] = {byU[0], byU[1], byV[0], byV[1]};
+        surface.EvaluateStencil(uv.data(), stencils[0].data(), stencils[1].data(),
+                                stencils[2].data());
         double expected[3][3];
         for (std::size_t k = 0; k < 3; ++k) {
             surface.ApplyStencil(stencils[k].data(), control.data(), 3, expected[k]);
@@ -358,7 +381,7 @@ TEST(Rates, PointsAndDerivativesAreThoseOfStencils) {
             // With Cosine, derivatives are no smoother than their weights are exact.
             double const tolerance = mask == ReferenceMask::Cosine ? 1e-4 : 1e-5;
             std::vector<double> const control = gather(surface, shape.positions);
-            Bfr::Parameterization const bfr = surface.GetParameterization().GetBfr();
+            Bfr::Parameterization const bfr = surface.GetParameterization();
             expectStencils(surface, control, {bfr, int(rates.size()), rates.data()}, 1, tolerance);
             // Here halves are evaluated with their edges.
             expectStencils(surface, control, {bfr, 2 + face % 7}, 1, tolerance);
@@ -372,7 +395,7 @@ TEST(Rates, InnerRatesOfAQuadAreToldApart) {
     auto const refiner = CreateRefiner(shape, ReferenceMask::Smooth, 0, Sdc::Options());
     SurfaceSet<double> const surfaces(*refiner, shape.positions);
     std::vector<double> const control = gather(surfaces[0], shape.positions);
-    Bfr::Parameterization const quad = Parameterization(4).GetBfr();
+    Bfr::Parameterization const quad = Parameterization(4);
     for (int u = 1; u <= 7; ++u) {
         for (int v = 1; v <= 7; ++v) {
             SCOPED_TRACE(testing::Message() << u << " by " << v);
@@ -393,10 +416,9 @@ TEST(Rates, HighRatesAreThoseOfStencils) {
     // Near vertices, stencils of places are those of bilinear cells, and those of edges are not.
     constexpr double kTolerance = 1e-4;
     int const rates[] = {40, 3, 1200, 5, 40, 30};
-    expectStencils(surfaces[0], control, {Parameterization(4).GetBfr(), 6, rates}, 41, kTolerance);
+    expectStencils(surfaces[0], control, {Parameterization(4), 6, rates}, 41, kTolerance);
     int const higherRates[] = {1, 2, 3, 4, 70, 62};
-    expectStencils(surfaces[0], control, {Parameterization(4).GetBfr(), 6, higherRates}, 101,
-                   kTolerance);
+    expectStencils(surfaces[0], control, {Parameterization(4), 6, higherRates}, 101, kTolerance);
 }
 
 // A triangle has the sub-faces of Catmull-Clark, too.
@@ -408,7 +430,7 @@ TEST(Rates, TrianglesHaveSubFaces) {
     Bfr::Parameterization const subFaces(OpenSubdiv::Sdc::SCHEME_CATMARK, 3);
     for (int const rate : {1, 2, 5, 6}) {
         expectStencils(surfaces[0], control, {subFaces, rate});
-        expectStencils(surfaces[0], control, {Parameterization(3).GetBfr(), rate});
+        expectStencils(surfaces[0], control, {Parameterization(3), rate});
     }
 }
 
@@ -435,7 +457,7 @@ TEST(Rates, DerivativesAreDifferences) {
         int const face = shape.GetNumFaces() - 1;
         Surface<double> const &surface = surfaces[face];
         SCOPED_TRACE(testing::Message() << "face of " << surface.GetFaceSize());
-        Bfr::Parameterization const bfr = surface.GetParameterization().GetBfr();
+        Bfr::Parameterization const bfr = surface.GetParameterization();
         std::vector<double> const control = gather(surface, shape.positions);
         Bfr::Tessellation const tessellation(bfr, 7);
         auto const numPlaces = std::size_t(tessellation.GetNumCoords());
@@ -452,7 +474,6 @@ TEST(Rates, DerivativesAreDifferences) {
                 for (std::size_t end = 0; end < 2; ++end) {
                     double uv[2] = {coords[2 * i], coords[2 * i + 1]};
                     uv[k] += end == 0 ? -kStep : kStep;
-                    Parameterization::ConvertFromBfr(bfr, uv, uv);
                     ends[end] = surfaces.EvaluatePosition(face, uv);
                 }
                 Vector3 const difference = Scale(Subtract(ends[1], ends[0]), 0.5 / kStep);
@@ -478,11 +499,11 @@ TEST(Rates, WrongArgumentsWriteNothing) {
         surface.Evaluate(tessellation, control.data(), 3, &untouched, &untouched, &untouched, 3);
         EXPECT_EQ(untouched, 77);
     };
-    Bfr::Parameterization const quad = surfaces[0].GetParameterization().GetBfr();
+    Bfr::Parameterization const quad = surfaces[0].GetParameterization();
     expectNothing(surfaces[0], {quad, 4, rates});
     expectNothing(surfaces[0], {quad, 0});
-    expectNothing(surfaces[0], {Parameterization(3).GetBfr(), 2});
-    expectNothing(surfaces[0], {Parameterization(5).GetBfr(), 2});
+    expectNothing(surfaces[0], {Parameterization(3), 2});
+    expectNothing(surfaces[0], {Parameterization(5), 2});
     expectNothing(surfaces[0], {Bfr::Parameterization(), 2});
     expectNothing(Surface<double>(), {quad, 2});
 }
@@ -497,7 +518,7 @@ TEST(Rates, ThreadsShareACache) {
         for (int i = 0; i < shape.GetNumFaces(); ++i) {
             int const face = (begin + i) % shape.GetNumFaces();
             results[std::size_t(face)] = evaluate(surfaces[face], gather(surfaces[face], positions),
-                                                  {Parameterization(3).GetBfr(), 2 + face % 5});
+                                                  {Parameterization(3), 2 + face % 5});
         }
         return results;
     };

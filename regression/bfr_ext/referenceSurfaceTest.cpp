@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // Surfaces against the limits that the reference finds by refining again and again.
+#include "facePlaces.h"
 #include "surfaceCase.h"
 #include "surfaceFixture.h"
 
@@ -63,7 +64,7 @@ public:
 
     struct Place {
         int baseFace;
-        std::array<double, 2> uv;
+        std::array<double, 2> inPlane; // of triangles and quads, (u, v)
     };
     /// By vertex, in all base faces around.
     std::map<int, std::vector<Place>> const &GetPlaces() const { return _places; }
@@ -123,13 +124,13 @@ void expectLimits(SurfaceSet<double> const &surfaces, ReferenceSurface const &re
             if (!hasSurface(place)) {
                 continue;
             }
+            FacePlace const uv = FromPlane(surfaces[place.baseFace].GetFaceSize(), place.inPlane);
             double const distance =
-                GetDistance(surfaces.EvaluatePosition(place.baseFace, place.uv.data()), limit) /
-                size;
+                GetDistance(surfaces.EvaluatePosition(place.baseFace, uv.data()), limit) / size;
             comparison.largest = std::max(comparison.largest, distance);
             ++comparison.numPlaces;
             ASSERT_LE(distance, 1e-11) << "vertex " << vertex << ", face " << place.baseFace
-                                       << " at " << place.uv[0] << ", " << place.uv[1];
+                                       << " at " << place.inPlane[0] << ", " << place.inPlane[1];
         }
     }
 }
@@ -211,6 +212,24 @@ std::array<Vector3, 5> fitDerivatives(std::vector<std::array<double, 2>> const &
     return derivatives;
 }
 
+Vector3 sum(double a, Vector3 const &x, double b, Vector3 const &y) {
+    return Subtract(Scale(x, a), Scale(y, -b));
+}
+
+/// Derivatives by u and v, from those by the coordinates of the plane of a face.
+std::array<Vector3, 5> toUv(int faceSize, FacePlace const &uv,
+                            std::array<Vector3, 5> const &inPlane) {
+    auto const [place, byU, byV, byUv] =
+        FarExt::internal::FindInPlane(BfrExt::Parameterization(faceSize), uv);
+    auto const first = [&](FacePlace const &d) { return sum(d[0], inPlane[0], d[1], inPlane[1]); };
+    auto const second = [&](FacePlace const &d, FacePlace const &e) {
+        Vector3 const ofOne = sum(d[0] * e[0], inPlane[2], d[1] * e[1], inPlane[4]);
+        return sum(1, ofOne, d[0] * e[1] + d[1] * e[0], inPlane[3]);
+    };
+    return {first(byU), first(byV), second(byU, byU), sum(1, second(byU, byV), 1, first(byUv)),
+            second(byV, byV)};
+}
+
 /// How far second derivatives are from those of fitDerivatives(), over the length of the longest.
 double getDistanceOfSecond(std::array<Vector3, 3> const &found,
                            std::array<Vector3, 5> const &expected) {
@@ -276,8 +295,8 @@ TEST_P(ReferenceDerivativeTest, DerivativesAreThoseOfTheReference) {
             auto const chosen = std::next(places.begin(), std::ptrdiff_t(random() % places.size()));
             ReferenceSurface::Place const &place = chosen->second.front();
             ReferencePolygon const polygon =
-                DivideRegularPolygon(surfaces[place.baseFace].GetFaceSize(), 0)[0];
-            if (getDistanceToSectors(polygon, place.uv) < kDistance) {
+                DivideBasePolygon(surfaces[place.baseFace].GetFaceSize(), 0)[0];
+            if (getDistanceToSectors(polygon, place.inPlane) < kDistance) {
                 continue;
             }
             std::vector<std::array<double, 2>> around;
@@ -288,16 +307,18 @@ TEST_P(ReferenceDerivativeTest, DerivativesAreThoseOfTheReference) {
                 vertices.insert(face.vertices.begin(), face.vertices.end());
             }
             for (int const vertex : vertices) {
-                auto const &uv = places.at(vertex).front().uv;
-                around.push_back({uv[0] - place.uv[0], uv[1] - place.uv[1]});
+                auto const &uv = places.at(vertex).front().inPlane;
+                around.push_back({uv[0] - place.inPlane[0], uv[1] - place.inPlane[1]});
                 points.push_back(reference.FindLimit(limits, vertex));
             }
-            std::array<Vector3, 5> const expected = fitDerivatives(around, points);
-            SurfacePoint const point = surfaces.Evaluate(place.baseFace, place.uv.data());
+            int const size = surfaces[place.baseFace].GetFaceSize();
+            FacePlace const uv = FromPlane(size, place.inPlane);
+            std::array<Vector3, 5> const expected = toUv(size, uv, fitDerivatives(around, points));
+            SurfacePoint const point = surfaces.Evaluate(place.baseFace, uv.data());
             ++numPlaces;
             if (GetParam() == ReferenceMask::Smooth) {
                 double const distance = getDistanceOfSecond(
-                    surfaces.EvaluateSecond(place.baseFace, place.uv.data()), expected);
+                    surfaces.EvaluateSecond(place.baseFace, uv.data()), expected);
                 largestOfSecond = GetLarger(largestOfSecond, distance);
                 sumOfSecond += distance;
             }
@@ -306,8 +327,8 @@ TEST_P(ReferenceDerivativeTest, DerivativesAreThoseOfTheReference) {
                 double const distance = GetDistance(found, wanted) / GetLength(wanted);
                 largest = GetLarger(largest, distance);
                 sum += distance / 2;
-                ASSERT_LE(distance, 0.02)
-                    << "face " << place.baseFace << " at " << place.uv[0] << ", " << place.uv[1];
+                ASSERT_LE(distance, 0.02) << "face " << place.baseFace << " at " << place.inPlane[0]
+                                          << ", " << place.inPlane[1];
             }
         }
     }

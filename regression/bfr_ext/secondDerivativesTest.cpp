@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // Second derivatives of surfaces; referenceSurfaceTest compares them with those of the reference.
+#include "facePlaces.h"
 #include "surfaceFixture.h"
 
 #include "bfr_ext/surfaceFactory.h"
@@ -65,25 +66,15 @@ std::vector<Place> findPlacesInSectors(BfrExt::Parameterization const &parameter
     int const size = parameterization.GetFaceSize();
     std::mt19937 random(static_cast<unsigned>(size));
     std::uniform_real_distribution<double> uniform(0, 1);
-    double center[2];
-    parameterization.GetCenterCoord(center);
     std::vector<Place> places;
     for (int sector = 0; sector < size; ++sector) {
-        double start[2];
-        double end[2];
-        parameterization.GetVertexCoord(sector, start);
-        parameterization.GetVertexCoord((sector + 1) % size, end);
         for (int i = 0; i < numPlacesInSector; ++i) {
             double weights[3] = {uniform(random), uniform(random), uniform(random)};
             double const sum = weights[0] + weights[1] + weights[2];
             for (double &weight : weights) {
                 weight = kDistance + (1 - 3 * kDistance) * weight / sum;
             }
-            places.push_back({});
-            for (std::size_t k = 0; k < 2; ++k) {
-                places.back()[k] =
-                    weights[0] * start[k] + weights[1] * end[k] + weights[2] * center[k];
-            }
+            places.push_back(MakeFacePlace(size, sector, weights[0], weights[1]));
         }
     }
     return places;
@@ -153,17 +144,32 @@ TEST(SecondDerivatives, AreThoseOfQuadratics) {
         SurfaceOf const of(shape, mask, 0);
         std::vector<Place> places = findPlacesInSectors(of.surface.GetParameterization(), 20);
         // Places of vertices of the base mesh and of the first levels, on edges and inside.
-        places.insert(places.end(),
-                      {{0, 0}, {1, 0}, {0.5, 0}, {0.25, 0}, {0.5, 0.125 * std::sqrt(3)}});
+        for (auto const &[edge, toStart, toEnd] :
+             {std::tuple(0, 1.0, 0.0), std::tuple(0, 0.0, 1.0), std::tuple(0, 0.5, 0.5),
+              std::tuple(0, 0.75, 0.25), std::tuple(4, 0.5, 0.25)}) {
+            places.push_back(MakeFacePlace(6, edge, toStart, toEnd));
+        }
         for (Place const &uv : places) {
             SCOPED_TRACE(testing::Message() << ToString(mask) << " at " << uv[0] << ", " << uv[1]);
             All<double> const all = evaluateAll(of.surface, of.points, uv);
-            Vector3 const expected[3] = {{2, 0, 0}, {0, 1, 0}, {0, 0, 2}};
-            for (std::size_t k = 0; k < 3; ++k) {
-                EXPECT_LE(GetDistance(all[3 + k], expected[k]), tolerance);
-            }
-            EXPECT_LE(GetDistance(all[1], {2 * uv[0], uv[1], -3}), 1e-4);
-            EXPECT_LE(GetDistance(all[2], {1, uv[0], 2 * uv[1]}), 1e-4);
+            // Of x * x + y, x * y, y * y - 3 * x, where x and y are bilinear in u and v.
+            auto const [at, byU, byV, byUv] =
+                FarExt::internal::FindInPlane(BfrExt::Parameterization(6), uv);
+            double const x = at[0];
+            double const y = at[1];
+            auto const first = [&](FacePlace const &d) {
+                return Vector3{2 * x * d[0] + d[1], x * d[1] + y * d[0], 2 * y * d[1] - 3 * d[0]};
+            };
+            auto const second = [&](FacePlace const &d, FacePlace const &e) {
+                return Vector3{2 * d[0] * e[0], d[0] * e[1] + d[1] * e[0], 2 * d[1] * e[1]};
+            };
+            Vector3 const mixed = Subtract(second(byU, byV), Scale(first(byUv), -1));
+            EXPECT_LE(GetDistance(all[1], first(byU)), 1e-4);
+            EXPECT_LE(GetDistance(all[2], first(byV)), 1e-4);
+            EXPECT_LE(GetDistance(all[3], second(byU, byU)), 4 * tolerance);
+            // First derivatives are less exact than second ones.
+            EXPECT_LE(GetDistance(all[4], mixed), 4 * tolerance + 1e-4);
+            EXPECT_LE(GetDistance(all[5], second(byV, byV)), 4 * tolerance);
         }
     }
 }

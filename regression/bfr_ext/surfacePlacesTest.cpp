@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // Places of surfaces, which are evaluated by Gregory patches, beside stencils, which are exact.
+#include "facePlaces.h"
 #include "surfaceCase.h"
 #include "surfaceFixture.h"
 
@@ -55,20 +56,14 @@ struct PlacedSurface {
 };
 
 /// Places inside of a face: at some share of the way from its centre to its edges.
-std::vector<Uv> findPlaces(BfrExt::Parameterization const &plane, int number) {
+std::vector<Uv> findPlaces(int size, int number, double distance = 1) {
     std::mt19937 random(7);
     std::uniform_real_distribution<double> share(0, 1);
-    Uv center;
-    plane.GetCenterCoord(center.data());
     std::vector<Uv> places;
     for (int i = 0; i < number; ++i) {
-        Uv place;
-        plane.GetEdgeCoord(i % plane.GetFaceSize(), share(random), place.data());
-        double const t = 0.98 * std::sqrt(share(random)) + 0.01;
-        for (std::size_t k = 0; k < 2; ++k) {
-            place[k] = center[k] + t * (place[k] - center[k]);
-        }
-        places.push_back(place);
+        double const alongEdge = share(random);
+        double const t = distance * (0.98 * std::sqrt(share(random)) + 0.01);
+        places.push_back(MakeFacePlace(size, i % size, t * (1 - alongEdge), t * alongEdge));
     }
     return places;
 }
@@ -106,7 +101,7 @@ Errors findErrors(Shape const &shape, ReferenceMask mask, int level, int numPlac
         if (!surface.Init(*factory, shape.positions, face)) {
             continue;
         }
-        for (Uv const &uv : findPlaces(surface.surface.GetParameterization(), numPlaces)) {
+        for (Uv const &uv : findPlaces(surface.surface.GetFaceSize(), numPlaces)) {
             SurfacePoint const exact = EvaluateSurface(surface.surface, shape.positions, uv.data());
             std::array<Vector3, 6> const found = surface.Evaluate(uv);
             Vector3 const cross = Cross(exact.du, exact.dv);
@@ -156,7 +151,7 @@ TEST_P(SurfacePlacesTest, DerivativesAreNearlyThoseOfTheirPoints) {
         PlacedSurface surface;
         ASSERT_TRUE(surface.Init(*factory, shape.positions, 0));
         ASSERT_EQ(surface.surface.GetFaceSize(), size);
-        for (Uv const &uv : findPlaces(surface.surface.GetParameterization(), 200)) {
+        for (Uv const &uv : findPlaces(size, 200)) {
             std::array<Vector3, 6> const at = surface.Evaluate(uv);
             for (std::size_t k = 0; k < 2; ++k) {
                 Uv beside[2] = {uv, uv};
@@ -184,16 +179,18 @@ TEST_P(SurfacePlacesTest, PatchesMeet) {
         auto const factory = SurfaceFactory::Create(*refiner);
         PlacedSurface surface;
         ASSERT_TRUE(surface.Init(*factory, shape.positions, 0));
-        BfrExt::Parameterization const plane = surface.surface.GetParameterization();
-        std::vector<Uv> const ends = findPlaces(plane, 12);
+        std::vector<Uv> ends = findPlaces(size, 12);
+        for (Uv &end : ends) {
+            end = ToPlane(size, end.data());
+        }
         for (std::size_t i = 0; i + 1 < ends.size(); ++i) {
             Vector3 last{};
             Vector3 lastNormal{};
             for (int step = 0; step <= kNumSteps; ++step) {
                 double const t = double(step) / kNumSteps;
-                std::array<Vector3, 6> const at =
-                    surface.Evaluate({ends[i][0] + t * (ends[i + 1][0] - ends[i][0]),
-                                      ends[i][1] + t * (ends[i + 1][1] - ends[i][1])});
+                std::array<Vector3, 6> const at = surface.Evaluate(
+                    FromPlane(size, {ends[i][0] + t * (ends[i + 1][0] - ends[i][0]),
+                                     ends[i][1] + t * (ends[i + 1][1] - ends[i][1])}));
                 Vector3 const normal = Normalize(Cross(at[1], at[2]));
                 if (step > 0) {
                     ASSERT_LT(GetDistance(at[0], last), 20.0 / kNumSteps) << size;
@@ -245,24 +242,21 @@ TEST_P(SurfacePlacesTest, FacesMeet) {
 
 // Where a place is in its patch, and how that changes.
 TEST(SurfacePlaces, InPatchesChangeAsTheirDerivativesSay) {
-    using BfrExt::internal::FindBasePoint;
+    using BfrExt::internal::FindBfrPlace;
     using BfrExt::internal::FindPatchPlace;
     using BfrExt::internal::PatchPlace;
     constexpr double kStep = 1e-5;
     for (int const size : {3, 4, 5, 6, 7, 12}) {
         for (int const level : {2, 3, 5}) {
             auto const find = [&](Uv const &uv) {
-                return FindPatchPlace(FindBasePoint(size, uv[0], uv[1], 0), size, level, 2);
+                return FindPatchPlace(FindBfrPlace(BfrExt::Parameterization(size), uv, 0), size,
+                                      level, 2);
             };
             std::vector<bool> isMet(std::size_t(BfrExt::internal::GetNumFacePatches(size, level)));
-            std::vector<Uv> places = findPlaces(BfrExt::Parameterization(size), 400);
+            std::vector<Uv> places = findPlaces(size, 400);
             // Those near the centre, whose patches are of the whole cell.
-            for (std::size_t i = 0; i < 40; ++i) {
-                Uv center;
-                BfrExt::Parameterization(size).GetCenterCoord(center.data());
-                places.push_back({center[0] + 0.02 * (places[i][0] - center[0]),
-                                  center[1] + 0.02 * (places[i][1] - center[1])});
-            }
+            std::vector<Uv> const nearCenter = findPlaces(size, 40, 0.02);
+            places.insert(places.end(), nearCenter.begin(), nearCenter.end());
             for (Uv const &uv : places) {
                 PatchPlace const at = find(uv);
                 ASSERT_LT(std::size_t(at.patch), isMet.size());
@@ -334,7 +328,7 @@ TEST(SurfacePlaces, OfVaryingData) {
         ASSERT_TRUE(factory->InitVaryingSurface(face, &surface));
         std::vector<double> points(3 * std::size_t(surface.GetNumPatchPoints()));
         surface.PreparePatchPoints(shape.positions.data(), 3, points.data(), 3);
-        for (Uv const &uv : findPlaces(surface.GetParameterization(), 6)) {
+        for (Uv const &uv : findPlaces(surface.GetFaceSize(), 6)) {
             Vector3 p;
             surface.Evaluate(uv.data(), points.data(), 3, p.data());
             SurfacePoint const exact = EvaluateSurface(surface, shape.positions, uv.data());
@@ -401,7 +395,7 @@ TEST(SurfacePlaces, OfManyFacesAreThoseOfEach) {
     std::mt19937 random(3);
     std::vector<int> faces;
     std::vector<double> uvs;
-    for (Uv const &uv : findPlaces(BfrExt::Parameterization(3), kNumPlaces)) {
+    for (Uv const &uv : findPlaces(3, kNumPlaces)) {
         faces.push_back(int(random() % (unsigned(shape.GetNumFaces()) / 2)));
         uvs.insert(uvs.end(), uv.begin(), uv.end());
     }

@@ -5,6 +5,8 @@
 #include "far_ext/limitStencilTableFactory.h"
 #include "far_ext/patchMap.h"
 
+#include <opensubdiv/bfr/parameterization.h>
+
 #include <cmath>
 
 namespace OpenSubdivHex::Regression {
@@ -71,8 +73,25 @@ double getArea(std::array<double, 8> const &coords) {
     return area;
 }
 
-/// Twice the area of a regular polygon with sides 1 long.
-double getFaceArea(int size) { return size / (2 * std::tan(std::acos(-1.0) / size)); }
+/// Twice the area of a face in its plane: a right-angled triangle, or a regular polygon with sides 1 long.
+double getFaceArea(int size) {
+    return size == 3 ? 1 : size / (2 * std::tan(std::acos(-1.0) / size));
+}
+
+/// Some place inside of a face, away from the lines between sub-faces.
+std::array<double, 2> rollPlace(int size, Dice &dice) {
+    auto const roll = [&] { return 0.02 + 0.01 * dice.Roll(97); };
+    std::array<double, 2> uv = {roll(), roll()};
+    if (size == 3) {
+        uv[1] *= 1 - uv[0];
+    }
+    if (size > 4) {
+        OpenSubdiv::Bfr::Parameterization(OpenSubdiv::Sdc::SCHEME_CATMARK, size)
+            .ConvertNormalizedSubFaceToCoord(dice.Roll(size), std::array<double, 2>(uv).data(),
+                                             uv.data());
+    }
+    return uv;
+}
 
 /// Faces are covered by their patches, and places are found in these.
 void checkPlaces(PatchMap const &map, TopologyLevel const &level, Dice &dice) {
@@ -90,11 +109,7 @@ void checkPlaces(PatchMap const &map, TopologyLevel const &level, Dice &dice) {
         if (!(std::abs(area - getFaceArea(size)) < 1e-9 * size * size) && area != 0) {
             Fail("the patches of face ", face, " have the area ", area);
         }
-        // Somewhere on the way from the centre to an edge.
-        double const radius = 0.5 / std::tan(std::acos(-1.0) / size);
-        double const share = 0.01 * dice.Roll(100);
-        double const u = 0.5 + share * 0.3 * (dice.Roll(3) - 1);
-        double const v = radius * (1 - share);
+        auto const [u, v] = rollPlace(size, dice);
         PatchMap::Place const place = map.FindPlace(face, u, v);
         if ((place.patch < 0) != (area == 0)) {
             Fail("face ", face, " has the patch ", place.patch, " at ", u, ", ", v);
@@ -135,8 +150,9 @@ void checkCorners(OracleLevels const &levels, OracleLevels::Values const &values
         }
         bool const isKite = table.GetPatchParam(PatchMap::GetHandle(patch)).NonQuadRoot();
         for (int i = 0; i < kNumCorners; i += isKite ? 2 : 1) {
-            double const uv[2] = {map.GetCoords(patch)[std::size_t(2 * i)],
-                                  map.GetCoords(patch)[std::size_t(2 * i + 1)]};
+            double uv[2];
+            map.GetFacePlace({patch, i == 1 || i == 2 ? 1.0 : 0.0, i >= 2 ? 1.0 : 0.0}, &uv[0],
+                             &uv[1]);
             Eigen::RowVectorXd const expected = mesh.Evaluate(map.GetFace(patch), uv).row(0);
             Eigen::RowVectorXd const actual =
                 points.row(vertices[numPoints * patch + numPoints / kNumCorners * i] - numControl);

@@ -2,6 +2,7 @@
 #include "meshSurfaces.h"
 
 #include "bfr_ext/view.h"
+#include "regression/bfr_ext/facePlaces.h"
 #include "regression/bfr_ext/picture.h"
 
 #include <cmath>
@@ -100,6 +101,7 @@ public:
         std::vector<Coords> corners(std::size_t(tree.GetFaceSize()));
         for (std::size_t i = 0; i < corners.size(); ++i) {
             _mesh.factory->GetFaceParameterization(_face).GetVertexCoord(int(i), corners[i].data());
+            corners[i] = ToPlane(tree.GetFaceSize(), corners[i].data());
         }
         forLeaves(tree, 0, corners, [&](int cell, std::vector<Coords> const &ofCell) {
             if (!_dice.IsOneOf(1 + tree.GetNumLeaves() / 10)) {
@@ -117,7 +119,10 @@ public:
 private:
     static constexpr int kNumPlaces = 4;
 
-    SurfacePoint evaluate(Coords const &uv) const {
+    // At a place in the plane of the face.
+    SurfacePoint evaluate(Coords const &place) const {
+        int const size = _mesh.factory->GetFaceParameterization(_face).GetFaceSize();
+        Coords const uv = FromPlane(size, place);
         ReferenceValues const values = _mesh.Evaluate(_face, uv.data());
         auto const row = [&](int i) { return Vector3{values(i, 0), values(i, 1), values(i, 2)}; };
         return {row(0), row(1), row(2)};

@@ -269,7 +269,7 @@ Contest makeRateContest(BenchMesh const &mesh, bool isRegular) {
     auto const peer = std::make_shared<PeerSurfaces>();
     makeSurfaces(*workspace, own.get(), peer.get());
     auto const tessellation =
-        std::make_shared<Bfr::Tessellation>(own->surfaces[0].GetParameterization().GetBfr(), kRate);
+        std::make_shared<Bfr::Tessellation>(own->surfaces[0].GetParameterization(), kRate);
     takeRoom(*own, *peer, tessellation->GetNumCoords(), *workspace);
     auto const coords =
         std::make_shared<std::vector<float>>(2 * std::size_t(tessellation->GetNumCoords()));

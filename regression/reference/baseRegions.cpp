@@ -69,13 +69,15 @@ std::vector<int> FindBaseRegions(std::vector<TaggedMesh> const &levels) {
     return regions;
 }
 
-std::vector<ReferencePolygon> DivideRegularPolygon(int size, int numLevels) {
+std::vector<ReferencePolygon> DivideBasePolygon(int size, int numLevels) {
     double const turn = 2 * std::acos(-1.0) / size;
     ReferencePolygon polygon{{0, 0}};
     Point center{0, 0};
     for (int i = 1; i < size; ++i) {
-        polygon.push_back({polygon.back()[0] + std::cos(turn * (i - 1)),
-                           polygon.back()[1] + std::sin(turn * (i - 1))});
+        Point const last = polygon.back();
+        polygon.push_back(size == 3 ? Point{i == 1 ? 1.0 : 0.0, i == 2 ? 1.0 : 0.0}
+                                    : Point{last[0] + std::cos(turn * (i - 1)),
+                                            last[1] + std::sin(turn * (i - 1))});
         center = {center[0] + polygon.back()[0] / size, center[1] + polygon.back()[1] / size};
     }
     std::vector<ReferencePolygon> trapezoids;
@@ -104,7 +106,7 @@ std::vector<BasePiece> MakeBasePieces(TaggedMesh const &base) {
         std::vector<int> corners(base.faces[f].vertices.size());
         std::iota(corners.begin(), corners.end(), 0);
         int const size = int(corners.size());
-        pieces.push_back({int(f), int(f), corners, DivideRegularPolygon(size, 0)[0], false});
+        pieces.push_back({int(f), int(f), corners, DivideBasePolygon(size, 0)[0], false});
     }
     return pieces;
 }

@@ -26,7 +26,7 @@ using ReferencePolygon = std::vector<std::array<double, 2>>;
 /// its sides and those of the small one.  A trapezoid, whose first side is twice as long as that
 /// opposite to it, falls into four of half its size: one amid its first side, and three along its
 /// other sides.
-std::vector<ReferencePolygon> DivideRegularPolygon(int size, int numLevels);
+std::vector<ReferencePolygon> DivideBasePolygon(int size, int numLevels);
 
 /// \brief What lies in one face of the base: a face, or half a hexagon, with the places of its corners in
 /// the regular polygon that the base face is.

@@ -44,8 +44,11 @@ CellReference::CellReference(ReferenceMesh const &base, std::vector<int> const &
             piece.sides.push_back(
                 {lines[std::size_t(half.edge().idx())], half != half.edge().h0()});
             double const angle = 2 * M_PI * (i - 0.5) / size - M_PI / 2;
+            // Triangles are right-angled.
             piece.corners.push_back(
-                {0.5 + radius * std::cos(angle), height + radius * std::sin(angle)});
+                size == 3 ? std::array<double, 2>{i == 1 ? 1.0 : 0.0, i == 2 ? 1.0 : 0.0}
+                          : std::array<double, 2>{0.5 + radius * std::cos(angle),
+                                                  height + radius * std::sin(angle)});
         }
         _pieces.push_back(std::move(piece));
     }

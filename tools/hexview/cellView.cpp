@@ -200,7 +200,7 @@ void CellView::addTriangles(int number, Face const &face) {
         std::vector<float> const control = gather(face.uvSurface, _uvs, _uvWidth);
         face.uvSurface.Evaluate(triangles, control.data(), _uvWidth, coords.data(), _uvWidth);
     } else {
-        triangles.GetCoords(coords.data());
+        triangles.GetPlaneCoords(coords.data());
     }
     for (int const place : places) {
         _topology.triangleSides.push_back(face.sides[std::size_t(place)]);

@@ -120,7 +120,7 @@ int main() {
         rates.push_back(faceRates[face]);
         std::printf("face %d, rate %d:\n", face, faceRates[face]);
         ofRates.Add(surface, cube.positions,
-                    Bfr::Tessellation(surface.GetParameterization().GetBfr(), int(rates.size()),
+                    Bfr::Tessellation(surface.GetParameterization(), int(rates.size()),
                                       rates.data()));
 
         std::vector<int> levels = findEdgeNumbers(base, face, faceLevels);

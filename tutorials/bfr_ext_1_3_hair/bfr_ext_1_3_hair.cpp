@@ -108,18 +108,18 @@ Roots plantRoots(Mesh const &mesh, BfrExt::SurfaceFactory const &factory, int nu
     std::uniform_real_distribution<float> share(0, 1);
     for (int i = 0; i < numRoots; ++i) {
         int const face = choose(random);
-        // In the triangle of an edge and the centre.
-        BfrExt::Parameterization const plane = factory.GetFaceParameterization(face);
-        std::uniform_int_distribution<int> edge(0, plane.GetFaceSize() - 1);
-        float center[2];
-        float place[2];
-        plane.GetCenterCoord(center);
-        plane.GetEdgeCoord(edge(random), share(random), place);
-        float const outward = std::sqrt(share(random));
-        roots.faces.push_back(face);
-        for (int k = 0; k < 2; ++k) {
-            roots.uvs.push_back(center[k] + outward * (place[k] - center[k]));
+        BfrExt::Parameterization const parameterization = factory.GetFaceParameterization(face);
+        float uv[2] = {share(random), share(random)};
+        if (parameterization.HasSubFaces()) {
+            std::uniform_int_distribution<int> subFace(0, parameterization.GetFaceSize() - 1);
+            float const inSubFace[2] = {uv[0], uv[1]};
+            parameterization.ConvertNormalizedSubFaceToCoord(subFace(random), inSubFace, uv);
+        } else if (parameterization.GetFaceSize() == 3 && uv[0] + uv[1] > 1) {
+            uv[0] = 1 - uv[0];
+            uv[1] = 1 - uv[1];
         }
+        roots.faces.push_back(face);
+        roots.uvs.insert(roots.uvs.end(), uv, uv + 2);
     }
     return roots;
 }

@@ -63,13 +63,9 @@ struct Arguments {
 /// Cuts a face by a rate for all edges.
 void tessellate(BfrExt::Surface<float> const &surface, int rate, float const *controlPoints,
                 FaceFacets *face) {
-    Bfr::Parameterization const plane = surface.GetParameterization().GetBfr();
-    Bfr::Tessellation const tessellation(plane, rate);
+    Bfr::Tessellation const tessellation(surface.GetParameterization(), rate);
     face->coords.resize(2 * std::size_t(tessellation.GetNumCoords()));
     tessellation.GetCoords(face->coords.data());
-    for (std::size_t i = 0; i < face->coords.size(); i += 2) {
-        BfrExt::Parameterization::ConvertFromBfr(plane, &face->coords[i], &face->coords[i]);
-    }
     face->facets.resize(3 * std::size_t(tessellation.GetNumFacets()));
     tessellation.GetFacets(face->facets.data());
     face->points.resize(3 * std::size_t(tessellation.GetNumCoords()));

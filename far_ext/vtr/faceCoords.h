@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+#ifndef OPENSUBDIVHEX_FAR_EXT_VTR_FACE_COORDS_H
+#define OPENSUBDIVHEX_FAR_EXT_VTR_FACE_COORDS_H
+
+#include "basePolygon.h"
+
+#include "far_ext/export.h"
+
+#include <opensubdiv/bfr/parameterization.h>
+
+namespace OpenSubdivHex::FarExt::internal {
+
+/// \brief The parameterization of a face of \p size vertices: a quad is the unit square, a triangle has the corners
+/// (0, 0), (1, 0) and (0, 1), and others have a sub-face for each corner.
+///
+/// In quads and triangles (u, v) are the coordinates of the plane of BasePolygon.  There is none for fewer than 3
+/// vertices, nor for more than Bfr allows.
+OPENSUBDIVHEX_API OpenSubdiv::Bfr::Parameterization MakeFaceParameterization(int size);
+
+/// A place in the plane of BasePolygon, with the derivatives of its coordinates by u and v.
+struct PlanePlace {
+    using Pair = BasePolygon::Pair;
+
+    Pair coords;
+    Pair byU;
+    Pair byV;
+    Pair byUv; ///< by both; there are no others
+};
+
+/// \brief Where (u, v), which are finite, lie in the plane of the face of a valid parameterization.
+///
+/// A sub-face is mapped bilinearly to the kite of its corner, the centre of the face, and the middles of the two
+/// edges at the corner.  Of (u, v) outside of the face it is the sub-face that Bfr finds.
+OPENSUBDIVHEX_API PlanePlace FindInPlane(OpenSubdiv::Bfr::Parameterization const &parameterization,
+                                         BasePolygon::Pair const &uv);
+
+/// \brief Writes u and v of a point of a face of \p size vertices, which has a parameterization.
+///
+/// Between two sub-faces it is in the second, but the centre is in that of corner 0.
+template <typename REAL>
+void WriteFaceCoords(int size, int sector, SectorPoint point, REAL *uv);
+
+} // namespace OpenSubdivHex::FarExt::internal
+
+#endif
