@@ -584,19 +584,23 @@ int Surface<REAL>::evaluateStencil(REAL const uv[2], int numDerivatives,
     CellStencil stencil(*_type);
     stencil.Find(place.point, numDerivatives > 0);
     copyWeights(stencil.GetWeights(), weights[0]);
-    if (numDerivatives > 0) {
-        copyWeights(stencil.GetDuWeights(), weights[1]);
-        copyWeights(stencil.GetDvWeights(), weights[2]);
+    if (numDerivatives == 0) {
+        return GetNumControlPoints();
     }
+    std::vector<double> rows[5] = {stencil.GetDuWeights(), stencil.GetDvWeights()};
     if (numDerivatives > 1) {
         stencil.FindSecond(place.point);
-        copyWeights(stencil.GetDuuWeights(), weights[3]);
-        copyWeights(stencil.GetDuvWeights(), weights[4]);
-        copyWeights(stencil.GetDvvWeights(), weights[5]);
+        rows[2] = stencil.GetDuuWeights();
+        rows[3] = stencil.GetDuvWeights();
+        rows[4] = stencil.GetDvvWeights();
     }
-    if (numDerivatives > 0 && _parameterization.HasSubFaces()) {
-        internal::ToUv(place, std::size_t(GetNumControlPoints()), weights + 1,
-                       numDerivatives > 1 ? weights + 3 : nullptr);
+    if (_parameterization.HasSubFaces()) {
+        double *const first[2] = {rows[0].data(), rows[1].data()};
+        double *const second[3] = {rows[2].data(), rows[3].data(), rows[4].data()};
+        internal::ToUv(place, rows[0].size(), first, numDerivatives > 1 ? second : nullptr);
+    }
+    for (std::size_t i = 0; i < (numDerivatives > 1 ? 5 : 2); ++i) {
+        copyWeights(rows[i], weights[1 + i]);
     }
     return GetNumControlPoints();
 }

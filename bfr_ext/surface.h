@@ -189,7 +189,8 @@ public:
     /// @}
 
     /// @name Evaluation
-    /// (u, v) outside the face, however far, is moved to its boundary, towards the centre.  Where u or v
+    /// (u, v) outside the face, however far, is moved to its boundary, towards the centre; outside of a
+    /// sub-face, to that of the sub-face which Bfr finds.  Where u or v
     /// is not a number, points and derivatives are none, and some weights.
     /// @{
 

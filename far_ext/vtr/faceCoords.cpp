@@ -26,7 +26,8 @@ PlanePlace FindInPlane(Bfr::Parameterization const &parameterization, Pair const
     Pair subUv;
     int const subFace =
         parameterization.ConvertCoordToNormalizedSubFace(nearUv.data(), subUv.data());
-    auto const [s, t] = subUv;
+    double const s = std::clamp(subUv[0], 0.0, 1.0);
+    double const t = std::clamp(subUv[1], 0.0, 1.0);
     // From the centre of the polygon.
     Pair const corner = polygon.GetCorner(subFace);
     Pair const next = polygon.GetCorner((subFace + 1) % size);

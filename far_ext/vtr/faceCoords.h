@@ -30,7 +30,7 @@ struct PlanePlace {
 /// \brief Where (u, v), which are finite, lie in the plane of the face of a valid parameterization.
 ///
 /// A sub-face is mapped bilinearly to the kite of its corner, the centre of the face, and the middles of the two
-/// edges at the corner.  Of (u, v) outside of the face it is the sub-face that Bfr finds.
+/// edges at the corner.  (u, v) outside of the sub-face that Bfr finds is moved to its boundary.
 OPENSUBDIVHEX_API PlanePlace FindInPlane(OpenSubdiv::Bfr::Parameterization const &parameterization,
                                          BasePolygon::Pair const &uv);
 
