@@ -10,6 +10,7 @@
 #include "far_ext/vtr/inline.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <type_traits>
 #include <utility>
@@ -177,105 +178,109 @@ int GetNumFacePatches(int size, int level) {
 
 namespace {
 
-// The coordinates in a cell that has a place, and their derivatives by u and v.
-struct CellPlace {
-    explicit CellPlace(BfrPlace const &place, bool hasSubFaces)
-        : coords(place.point.coords), rows{place.point.toCoords[0], place.point.toCoords[1]} {
-        if (hasSubFaces) {
-            auto const &[x, y] = place.toOwn;
-            for (std::size_t i = 0; i < 2; ++i) {
-                Pair const by = rows[i];
-                rows[i] = {by[0] * x[0] + by[1] * y[0], by[0] * x[1] + by[1] * y[1]};
-                mixed[i] = by[0] * place.mixed[0] + by[1] * place.mixed[1];
-            }
-        }
-    }
+// The linear part of a map from the coordinates in a sector.
+using Linear = std::array<Pair, 2>;
 
-    void Step(CellMap const &map) {
-        coords = map.Apply(coords);
-        Pair const before[2] = {rows[0], rows[1]};
-        Pair const mixedBefore = mixed;
-        for (std::size_t i = 0; i < 2; ++i) {
-            for (std::size_t k = 0; k < 2; ++k) {
-                rows[i][k] = map.rows[i][0] * before[0][k] + map.rows[i][1] * before[1][k];
-            }
-            mixed[i] = map.rows[i][0] * mixedBefore[0] + map.rows[i][1] * mixedBefore[1];
-        }
-    }
-
-    Pair coords;
-    Pair rows[2];
-    Pair mixed = {0, 0}; // by both
-};
+// To those in a half cell of the same size, behind steps that turn it by so many sixths of a full turn.
+constexpr Linear kFromSectorTo[6] = {{{{-0.5, 0.5}, {-1, -1}}}, {{{-1, -0.5}, {0, -1}}},
+                                     {{{-0.5, -1}, {1, 0}}},    {{{0.5, -0.5}, {1, 1}}},
+                                     {{{1, 0.5}, {0, 1}}},      {{{0.5, 1}, {-1, 0}}}};
 
 // From the coordinates in the sector of a whole cell to those that the shape of its patches is given by: the
-// number of the patch among those of the cell, and where the place is in it.
-Quadrilateral findInWhole(int size, int sector, CellPlace &place, int &patch) {
-    auto const step = [&](Pair const &toStart, Pair const &toEnd, Pair const &center) {
-        place.Step({{{toStart[0], toEnd[0]}, {toStart[1], toEnd[1]}}, center});
+// number of the patch among those of the cell, where the place is in it, and the map between them.
+Quadrilateral findInWhole(int size, int sector, Pair const &coords, int &patch, Linear &linear) {
+    auto const map = [&](Pair const &toStart, Pair const &toEnd, Pair const &center) {
+        linear = {{{toStart[0], toEnd[0]}, {toStart[1], toEnd[1]}}};
+        return CellMap{{linear[0], linear[1]}, center}.Apply(coords);
     };
     if (size == 4) {
         constexpr Pair kCorners[4] = {{-0.5, -0.5}, {0.5, -0.5}, {0.5, 0.5}, {-0.5, 0.5}};
-        step(kCorners[sector], kCorners[(sector + 1) % 4], {0.5, 0.5});
-        return {place.coords[0], place.coords[1], {{1, 0}, {0, 1}}, {0, 0}};
+        Pair const st = map(kCorners[sector], kCorners[(sector + 1) % 4], {0.5, 0.5});
+        return {st[0], st[1], {{1, 0}, {0, 1}}, {0, 0}};
     }
     if (FarExt::HasHalves(size)) {
         patch = FarExt::GetHalfOfEdge(sector);
         // Of a half, whose long edge is the diagonal, from the centre of that on, around from its end.
         constexpr Pair kCorners[4] = {{0.5, 0}, {0.25, 0.5}, {-0.25, 0.5}, {-0.5, 0}};
         int const local = sector % FarExt::kDiagonalEnd;
-        step(kCorners[local], kCorners[local + 1], {0.5, 0});
-        return findInTrapezoid(place.coords);
+        return findInTrapezoid(map(kCorners[local], kCorners[local + 1], {0.5, 0}));
     }
     double const cosine = std::cos(FarExt::internal::kPi / size);
     double const corner = 0.5 / (cosine * cosine);
-    bool const isAtStart = place.coords[0] >= place.coords[1];
+    bool const isAtStart = coords[0] >= coords[1];
     patch = isAtStart ? sector : (sector + 1) % size;
-    if (isAtStart) {
-        step({corner, corner}, {2 - corner, -corner}, {0, 0});
-    } else {
-        step({-corner, 2 - corner}, {corner, corner}, {0, 0});
-    }
-    return findInKite(place.coords, corner - 1);
+    return findInKite(isAtStart ? map({corner, corner}, {2 - corner, -corner}, {0, 0})
+                                : map({-corner, 2 - corner}, {corner, corner}, {0, 0}),
+                      corner - 1);
 }
+
+// The derivatives of the coordinates that a map makes of those in a sector, by u and v: once, and by both.
+struct ByUv {
+    ByUv(Linear const &linear, double scale, BfrPlace const &place, bool hasSubFaces) {
+        for (std::size_t i = 0; i < 2; ++i) {
+            // By the coordinates of the plane, which in triangles and quads are u and v.
+            Pair by;
+            for (std::size_t k = 0; k < 2; ++k) {
+                by[k] = scale * (linear[i][0] * place.point.toCoords[0][k] +
+                                 linear[i][1] * place.point.toCoords[1][k]);
+            }
+            first[i] = by;
+            if (hasSubFaces) {
+                auto const &[x, y] = place.toOwn;
+                first[i] = {by[0] * x[0] + by[1] * y[0], by[0] * x[1] + by[1] * y[1]};
+                mixed[i] = by[0] * place.mixed[0] + by[1] * place.mixed[1];
+            }
+        }
+    }
+
+    Pair first[2];
+    Pair mixed = {0, 0};
+};
 
 } // namespace
 
 PatchPlace FindPatchPlace(BfrPlace const &ofFace, int size, int level, int numDerivatives) {
-    BasePoint const &point = ofFace.point;
-    CellPlace cell(ofFace, size > 4);
+    int const sector = ofFace.point.sector;
+    Pair coords = ofFace.point.coords;
     int left = level;
-    for (; left > 0 && cell.coords[0] + cell.coords[1] <= 0.5; --left) {
-        cell.Step(kToFFace);
+    for (; left > 0 && coords[0] + coords[1] <= 0.5; --left) {
+        coords = {2 * coords[0], 2 * coords[1]};
     }
     PatchPlace place = {};
-    Quadrilateral in = {};
+    Quadrilateral in;
+    Linear linear;
+    // Each step halves cells, but that from the sector to the half cell, which is part of the map.
+    int const numHalvings = left == 0 ? level : level - 1;
     if (left == 0) {
-        in = findInWhole(size, point.sector, cell, place.patch);
+        in = findInWhole(size, sector, coords, place.patch, linear);
     } else {
         --left;
-        cell.Step(HalfCell::kFromSector);
-        place.patch = GetNumFacePatches(size, left) + point.sector * getNumHalfPatches(left);
+        coords = HalfCell::kFromSector.Apply(coords);
+        place.patch = GetNumFacePatches(size, left) + sector * getNumHalfPatches(left);
+        int turn = 0;
         while (left > 0) {
             --left;
-            int const child = HalfCell::FindChild(cell.coords);
+            int const child = HalfCell::FindChild(coords);
             place.patch += child * getNumHalfPatches(left);
-            cell.Step(HalfCell::kChildren[child]);
+            coords = HalfCell::kChildren[child].Apply(coords);
+            turn += HalfCell::kTurns[child];
         }
-        in = findInTrapezoid(cell.coords);
+        linear = kFromSectorTo[turn % 6];
+        in = findInTrapezoid(coords);
     }
     place.s = in.s;
     place.t = in.t;
     if (numDerivatives == 0) {
         return place;
     }
+    ByUv const cell(linear, double(1 << numHalvings), ofFace, size > 4);
     double const factor = 1 / (in.bySt[0][0] * in.bySt[1][1] - in.bySt[0][1] * in.bySt[1][0]);
     auto const solve = [&](double first, double second) {
         return Pair{(in.bySt[1][1] * first - in.bySt[0][1] * second) * factor,
                     (in.bySt[0][0] * second - in.bySt[1][0] * first) * factor};
     };
     for (std::size_t k = 0; k < 2; ++k) {
-        Pair const byUv = solve(cell.rows[0][k], cell.rows[1][k]);
+        Pair const byUv = solve(cell.first[0][k], cell.first[1][k]);
         place.first[0][k] = byUv[0];
         place.first[1][k] = byUv[1];
     }
