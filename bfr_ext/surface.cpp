@@ -22,6 +22,8 @@ bool internal::BaseType::IsInLattice() const {
     return _type ? _type->IsInLattice() : _plain->IsInLattice();
 }
 
+bool internal::BaseType::IsSharp() const { return _type && _type->IsSharp(); }
+
 internal::PlainFaceType const *internal::BaseType::GetPlain() const {
     return _plain && !_plain->IsInLattice() ? _plain : nullptr;
 }

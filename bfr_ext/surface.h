@@ -37,6 +37,8 @@ public:
     CellType const &operator*() const;
     CellType const *operator->() const { return &**this; }
     bool IsInLattice() const;
+    /// Whether something sharp is near.
+    bool IsSharp() const;
     /// That of a plain face that is not in a lattice, whose CellType need not be made; null of others.
     PlainFaceType const *GetPlain() const;
 

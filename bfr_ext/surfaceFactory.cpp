@@ -87,9 +87,10 @@ void SurfaceFactory::setTypes() {
 
 SurfaceFactory::~SurfaceFactory() = default;
 
-int SurfaceFactory::getPatchLevel() const {
-    return std::clamp(_options.GetApproxLevelSmooth(), internal::kFirstPatchLevel,
-                      internal::kLastPatchLevel);
+int SurfaceFactory::getPatchLevel(internal::BaseType const &type) const {
+    int const level =
+        type.IsSharp() ? _options.GetApproxLevelSharp() : _options.GetApproxLevelSmooth();
+    return std::clamp(level, internal::kFirstPatchLevel, internal::kLastPatchLevel);
 }
 
 std::unique_ptr<SurfaceFactory> SurfaceFactory::Create(FarExt::TopologyRefiner const &refiner,
@@ -255,7 +256,7 @@ CallStatus SurfaceFactory::init(Index face, Interpolation interpolation, int cha
     }
     int const size = level.GetFaceSize(levelFace);
     int const numPoints = int(points.size()) - 2 * size;
-    surface.set(_owner, type, size, getPatchLevel(), numPoints, nullptr);
+    surface.set(_owner, type, size, getPatchLevel(type), numPoints, nullptr);
     // Vertices of the value mesh of a later level are its values.
     if (values && depth == 0) {
         std::for_each_n(points.begin(), numPoints,
@@ -277,7 +278,7 @@ CallStatus SurfaceFactory::initKept(Index face, Interpolation interpolation, int
         kept = _kept->Add(kind, face, surface._type, surface.GetFaceSize(), surface._ownPoints);
     }
     if (kept) {
-        surface.set(_owner, kept->type, kept->size, getPatchLevel(), kept->numPoints,
+        surface.set(_owner, kept->type, kept->size, getPatchLevel(kept->type), kept->numPoints,
                     kept->GetPoints());
     }
     return CallStatus();

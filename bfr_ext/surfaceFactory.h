@@ -83,6 +83,15 @@ public:
         }
         /// That level; by default 3.
         int GetApproxLevelSmooth() const { return _approxLevelSmooth; }
+        /// Sets that of faces whose control points include a sharp or semi-sharp edge, a corner or a boundary.  Where
+        /// it differs from the smooth one, faces of both kinds agree about their edge within the error of the
+        /// coarser.
+        Options &SetApproxLevelSharp(int level) {
+            _approxLevelSharp = level;
+            return *this;
+        }
+        /// That level; by default 3.
+        int GetApproxLevelSharp() const { return _approxLevelSharp; }
 
         /// Sets the memory, in bytes, for what surfaces are made of, which is kept as long as the factory and
         /// surfaces that it made.  What there is no memory for is found again for each surface.
@@ -97,6 +106,7 @@ public:
         FVarID _defaultFVarID = 0;
         SurfaceFactoryCache *_externalCache = nullptr;
         int _approxLevelSmooth = 3;
+        int _approxLevelSharp = 3;
         std::size_t _memoryOfFaces = std::size_t(64) << 20;
     };
 
@@ -226,7 +236,7 @@ private:
     SurfaceFactory(SurfaceFactory const &other, Options options);
 
     void setTypes();
-    int getPatchLevel() const;
+    int getPatchLevel(internal::BaseType const &type) const;
     bool hasRefinedAgain() const;
     FarExt::CallStatus checkIsFace(Index face) const;
     FarExt::CallStatus checkFace(Index face) const;

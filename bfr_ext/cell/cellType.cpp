@@ -44,17 +44,23 @@ void trim(CellPatch &cell) {
     cell.patch.vertSharpness.shrink_to_fit();
 }
 
+bool isSharp(LimitPatch const &patch) {
+    auto const isNone = [](auto const &tags) {
+        return std::all_of(tags.begin(), tags.end(), [](float tag) { return tag == 0; });
+    };
+    auto const isBoundary = [](int other) { return other < 0 && other != kFreeBoundary; };
+    return !isNone(patch.edgeSharpness) || !isNone(patch.diagonalSharpness) ||
+           !isNone(patch.vertSharpness) || !patch.nonManifoldVerts.empty() ||
+           !patch.sharpVerts.empty() ||
+           std::any_of(patch.otherCorners.begin(), patch.otherCorners.end(), isBoundary);
+}
+
 bool isInLattice(LimitPatch const &patch) {
     int const faceSize = patch.faceSizes[0];
     int const valence = CellType::GetLatticeValence(faceSize);
     auto const isSame = [&](int size) { return size == faceSize; };
-    auto const isNone = [](auto const &tags) {
-        return std::all_of(tags.begin(), tags.end(), [](float tag) { return tag == 0; });
-    };
     if (valence == 0 || !std::all_of(patch.faceSizes.begin(), patch.faceSizes.end(), isSame) ||
-        !isNone(patch.edgeSharpness) || !isNone(patch.diagonalSharpness) ||
-        !isNone(patch.vertSharpness) || !patch.nonManifoldVerts.empty() ||
-        !patch.sharpVerts.empty() || !patch.sectorCorners.empty()) {
+        isSharp(patch) || !patch.sectorCorners.empty()) {
         return false;
     }
     // Vertices where the patch ends have fewer faces.
@@ -64,9 +70,6 @@ bool isInLattice(LimitPatch const &patch) {
         auto const vert = std::size_t(patch.faceVerts[corner]);
         ++numFaces[vert];
         if (patch.otherCorners[corner] < 0) {
-            if (patch.otherCorners[corner] != kFreeBoundary) {
-                return false;
-            }
             std::size_t const local = corner % std::size_t(faceSize);
             std::size_t const next =
                 local + 1 == std::size_t(faceSize) ? corner - local : corner + 1;
@@ -120,7 +123,7 @@ struct Projection {
 
 CellType::CellType(CellTypes &types, CellPatch cell, CellRules const &rules)
     : _types(types), _cell(std::move(cell)), _numPoints(int(_cell.patch.sources.size())),
-      _isInLattice(isInLattice(_cell.patch)), _rules(rules) {}
+      _isInLattice(isInLattice(_cell.patch)), _isSharp(isSharp(_cell.patch)), _rules(rules) {}
 
 std::vector<CellType::Child> const &CellType::GetChildren() const {
     std::call_once(_onceChildren, [&] {

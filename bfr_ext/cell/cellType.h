@@ -64,6 +64,8 @@ public:
     ///
     /// There are few such types, which most faces and edges of many meshes are of.
     bool IsInLattice() const { return _isInLattice; }
+    /// Whether the patch has a sharp or semi-sharp edge or vertex, or a boundary that is not free.
+    bool IsSharp() const { return _isSharp; }
     /// How many faces of a size meet at a vertex of a lattice; 0 where there is none.
     static constexpr int GetLatticeValence(int faceSize) {
         return faceSize == 3 ? 6 : faceSize == 4 ? 4 : faceSize == 6 ? 3 : 0;
@@ -160,6 +162,7 @@ private:
     mutable FarExt::internal::CellPatch _cell; // of vertices, without a patch once it is not needed
     int const _numPoints;
     bool const _isInLattice;
+    bool const _isSharp;
     CellRules const _rules;
     mutable std::once_flag _onceChildren;
     mutable std::vector<Child> _children;

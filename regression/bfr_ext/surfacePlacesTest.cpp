@@ -90,10 +90,10 @@ struct Errors {
     int number = 0;
 };
 
-Errors findErrors(Shape const &shape, ReferenceMask mask, int level, int numPlaces) {
+Errors findErrors(Shape const &shape, ReferenceMask mask, SurfaceFactory::Options options,
+                  int numPlaces) {
     auto const refiner = CreateRefiner(shape, mask, 0, getOptions());
-    auto const factory =
-        SurfaceFactory::Create(*refiner, SurfaceFactory::Options().SetApproxLevelSmooth(level));
+    auto const factory = SurfaceFactory::Create(*refiner, options);
     double const size = getSize(shape.positions);
     Errors errors;
     PlacedSurface surface;
@@ -121,6 +121,13 @@ Errors findErrors(Shape const &shape, ReferenceMask mask, int level, int numPlac
     errors.distance = std::sqrt(errors.distance / errors.number);
     errors.angle = std::sqrt(errors.angle / errors.number);
     return errors;
+}
+
+Errors findErrors(Shape const &shape, ReferenceMask mask, int level, int numPlaces) {
+    return findErrors(
+        shape, mask,
+        SurfaceFactory::Options().SetApproxLevelSmooth(level).SetApproxLevelSharp(level),
+        numPlaces);
 }
 
 } // namespace
@@ -316,6 +323,38 @@ TEST(SurfacePlaces, OfAllShapesLieOnTheSurface) {
         }
     }
     EXPECT_GT(numShapes, 10);
+}
+
+// Two edges far from the other faces of a torus.
+TEST(SurfacePlaces, NearSharpFeaturesHaveALevelOfTheirOwn) {
+    Shape shape = MakeTorus(14, 10, TorusFaces::Quads);
+    auto const corner = shape.faceVertices.begin();
+    shape.creaseVertexPairs = {corner[0], corner[1], corner[1], corner[2]};
+    shape.creaseSharpness = {2.5F, 2.5F};
+    auto const getLevels = [](int sharp) {
+        return SurfaceFactory::Options().SetApproxLevelSmooth(2).SetApproxLevelSharp(sharp);
+    };
+    Errors const errors[2] = {findErrors(shape, ReferenceMask::Smooth, getLevels(2), 4),
+                              findErrors(shape, ReferenceMask::Smooth, getLevels(5), 4)};
+    EXPECT_LT(errors[1].largest, 0.5 * errors[0].largest);
+    auto const refiner = CreateRefiner(shape, ReferenceMask::Smooth, 0, getOptions());
+    auto const factory = SurfaceFactory::Create(*refiner, getLevels(5));
+    int numSharp = 0;
+    for (int face = 0; face < shape.GetNumFaces(); ++face) {
+        Surface<float> surface;
+        ASSERT_TRUE(factory->InitVertexSurface(face, &surface));
+        int const numPoints = surface.GetNumPatchPoints() - surface.GetNumControlPoints();
+        bool const isSharp = numPoints == 20 * BfrExt::internal::GetNumFacePatches(4, 5);
+        ASSERT_TRUE(isSharp || numPoints == 20 * BfrExt::internal::GetNumFacePatches(4, 2));
+        numSharp += isSharp ? 1 : 0;
+        // Faces with a sharp edge, and those around their neighbours.
+        Far::ConstIndexArray const verts = refiner->GetLevel(0).GetFaceVertices(face);
+        for (int const vert : shape.creaseVertexPairs) {
+            EXPECT_TRUE(isSharp || verts.FindIndex(vert) == Far::INDEX_INVALID) << face;
+        }
+    }
+    EXPECT_GT(numSharp, 6);
+    EXPECT_LT(numSharp, shape.GetNumFaces() / 2);
 }
 
 // Varying data are bilinear between the corners of patches, where they are exact.
