@@ -32,3 +32,26 @@ except ImportError as error:
             "configure with -D Python_EXECUTABLE=... to build it for this one"
         ) from error
     raise
+
+
+def _show(cls, *names):
+    """Has the objects of a class represented by some of their properties."""
+    def represent(self):
+        try:
+            values = [f"{name}={getattr(self, name)!r}" for name in names]
+        except RuntimeError as error:  # a level that is out of date
+            values = [str(error)]
+        return f"<{cls.__name__} {', '.join(values)}>"
+    cls.__repr__ = represent
+
+
+_show(TopologyRefiner, "scheme_type", "face_mask", "first_step", "max_level", "num_faces_total")
+_show(TopologyLevel, "depth", "num_vertices", "num_faces", "has_full_topology")
+_show(LimitSides, "num_vertices", "num_sides")
+_show(StencilTable, "num_stencils", "num_control_vertices")
+_show(CompactStencilTable, "num_stencils", "num_control_vertices", "num_bytes")
+_show(PatchTable, "num_patches", "num_control_vertices", "num_fvar_channels")
+_show(RefinementEvaluator, "max_level", "num_elements_all_levels")
+_show(LevelTessellation, "face_size", "levels")
+_show(Surface, "face_size")
+_show(SurfacePlaces, "num_places")

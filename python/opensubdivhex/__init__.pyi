@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-from typing import Any, Iterable, Sequence
+from typing import Any, Iterable, Literal, Sequence
 
 import numpy as np
 from numpy.typing import ArrayLike, DTypeLike, NDArray
@@ -188,6 +188,30 @@ class WarningCode:
     @property
     def value(self) -> int: ...
 
+# A member, or its name.
+_CreaseCuts = CreaseCuts | Literal["none", "infinitely_sharp", "all"]
+_CreasingMethod = CreasingMethod | Literal["uniform", "chaikin"]
+_ExecutorType = ExecutorType | Literal["default", "omp", "tbb"]
+_FVarLinearInterpolation = FVarLinearInterpolation | Literal[
+    "none",
+    "corners_only",
+    "corners_plus1",
+    "corners_plus2",
+    "boundaries",
+    "all",
+]
+_FaceMask = FaceMask | Literal["average", "cosine", "smooth"]
+_FirstStep = FirstStep | Literal["none", "tri_hex", "truncate"]
+_Interpolation = Interpolation | Literal["vertex", "varying"]
+_SchemeType = SchemeType | Literal["hexagonal", "doo_sabin", "tri_hex"]
+_SimdLevel = SimdLevel | Literal["portable", "avx2", "avx512"]
+_StencilMode = StencilMode | Literal["vertex", "varying", "face_varying"]
+_VtxBoundaryInterpolation = VtxBoundaryInterpolation | Literal[
+    "none",
+    "edge_only",
+    "edge_and_corner",
+]
+
 class StatusError(ValueError):
     code: StatusCode
     component: ComponentType
@@ -202,7 +226,7 @@ class StatusWarning(UserWarning):
 class ExecutorScope:
     def __init__(
         self,
-        executor: ExecutorType | str | None = None,
+        executor: _ExecutorType | None = None,
         num_threads: int = 0,
     ) -> None: ...
     def __enter__(self) -> ExecutorScope: ...
@@ -221,12 +245,12 @@ class TopologyRefiner:
         fvar_channels: Iterable[ArrayLike] | None = None,
         num_fvar_values: ArrayLike | None = None,
         is_left_handed: bool = False,
-        vtx_boundary_interpolation: VtxBoundaryInterpolation | str = "none",
-        fvar_linear_interpolation: FVarLinearInterpolation | str = "all",
-        creasing_method: CreasingMethod | str = "uniform",
-        face_mask: FaceMask | str = "average",
-        scheme_type: SchemeType | str = "hexagonal",
-        first_step: FirstStep | str = "none",
+        vtx_boundary_interpolation: VtxBoundary_Interpolation = "none",
+        fvar_linear_interpolation: _FVarLinearInterpolation = "all",
+        creasing_method: _CreasingMethod = "uniform",
+        face_mask: _FaceMask = "average",
+        scheme_type: _SchemeType = "hexagonal",
+        first_step: _FirstStep = "none",
     ) -> None: ...
     def refine_uniform(
         self,
@@ -315,7 +339,7 @@ class SurfacePlaces:
         faces: ArrayLike,
         uv: ArrayLike,
         *,
-        interpolation_mode: StencilMode | str = "vertex",
+        interpolation_mode: _StencilMode = "vertex",
         fvar_channel: int = 0,
     ) -> None: ...
     @property
@@ -467,7 +491,7 @@ class StencilTable:
         self,
         refiner: TopologyRefiner,
         *,
-        interpolation_mode: StencilMode | str = "vertex",
+        interpolation_mode: _StencilMode = "vertex",
         generate_control_verts: bool = False,
         generate_intermediate_levels: bool = True,
         factorize_intermediate_levels: bool = True,
@@ -480,7 +504,7 @@ class StencilTable:
         refiner: TopologyRefiner,
         base_faces: ArrayLike,
         *,
-        interpolation_mode: StencilMode | str = "vertex",
+        interpolation_mode: _StencilMode = "vertex",
         generate_control_verts: bool = False,
         generate_intermediate_levels: bool = True,
         factorize_intermediate_levels: bool = True,
@@ -494,14 +518,14 @@ class StencilTable:
         base_faces: ArrayLike,
         level: int,
         *,
-        interpolation_mode: StencilMode | str = "vertex",
+        interpolation_mode: _StencilMode = "vertex",
         fvar_channel: int = 0,
     ) -> NDArray[np.int32]: ...
     @staticmethod
     def estimate_size(
         refiner: TopologyRefiner,
         *,
-        interpolation_mode: StencilMode | str = "vertex",
+        interpolation_mode: _StencilMode = "vertex",
         generate_control_verts: bool = False,
         generate_intermediate_levels: bool = True,
         factorize_intermediate_levels: bool = True,
@@ -670,7 +694,7 @@ class RefinementEvaluator:
         self,
         refiner: TopologyRefiner,
         *,
-        interpolation_mode: StencilMode | str = "vertex",
+        interpolation_mode: _StencilMode = "vertex",
         fvar_channel: int = 0,
     ) -> None: ...
     @property
@@ -705,23 +729,23 @@ class RefinementEvaluator:
     ) -> tuple[NDArray[np.float32], NDArray[np.float32], NDArray[np.float32]]: ...
 
 def compute_face_vertex_mask(
-    mask: FaceMask | str,
-    interpolation: Interpolation | str,
+    mask: _FaceMask,
+    interpolation: _Interpolation,
     n: int,
 ) -> NDArray[np.float64]: ...
 def compute_half_face_vertex_mask(
-    mask: FaceMask | str,
-    interpolation: Interpolation | str,
+    mask: _FaceMask,
+    interpolation: _Interpolation,
 ) -> NDArray[np.float64]: ...
 def compute_normals(
     du: ArrayLike,
     dv: ArrayLike,
     normals: NDArray[Any] | None = None,
 ) -> NDArray[Any]: ...
-def compute_sector_shrink(mask: FaceMask | str, sector_size: float) -> float: ...
+def compute_sector_shrink(mask: _FaceMask, sector_size: float) -> float: ...
 def compute_tri_hex_mask(n: int) -> NDArray[np.float64]: ...
 def compute_vertex_vertex_mask(
-    interpolation: Interpolation | str,
+    interpolation: _Interpolation,
     num_faces: int,
 ) -> tuple[float, float]: ...
 def create_polygon_indices(
@@ -730,7 +754,7 @@ def create_polygon_indices(
     vertex_offset: int = 0,
     cut_base_faces: bool = True,
     labels: ArrayLike | None = None,
-    cut_creases: CreaseCuts | str = "all",
+    cut_creases: _CreaseCuts = "all",
     fvar_channels: Sequence[int] = (),
     sides: LimitSides | None = None,
     split_vertices: bool = False,
@@ -744,7 +768,7 @@ def create_triangle_indices(
     vertex_offset: int = 0,
     cut_base_faces: bool = True,
     labels: ArrayLike | None = None,
-    cut_creases: CreaseCuts | str = "all",
+    cut_creases: _CreaseCuts = "all",
     fvar_channels: Sequence[int] = (),
     sides: LimitSides | None = None,
     split_vertices: bool = False,
@@ -757,6 +781,6 @@ def get_executors() -> list[ExecutorType]: ...
 def get_max_simd_level() -> SimdLevel: ...
 def get_num_threads() -> int: ...
 def get_simd_level() -> SimdLevel: ...
-def set_executor(executor: ExecutorType | str) -> None: ...
+def set_executor(executor: _ExecutorType) -> None: ...
 def set_num_threads(num_threads: int) -> None: ...
-def set_simd_level(level: SimdLevel | str) -> None: ...
+def set_simd_level(level: _SimdLevel) -> None: ...

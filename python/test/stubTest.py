@@ -2,6 +2,7 @@
 """The type stubs and the docstrings say what there is, with the arguments that it takes."""
 
 import ast
+import inspect
 import pathlib
 import re
 
@@ -84,3 +85,40 @@ def test_everything_is_documented():
         if name.startswith("_") or not callable(value):
             continue
         assert value.__doc__ and len(value.__doc__) > 10, name
+
+
+def test_stubs_have_the_docstrings_of_the_module():
+    for name in ("TopologyRefiner", "Surface", "create_polygon_indices", "FaceMask"):
+        node = next(node for node in STUBS.body if getattr(node, "name", "") == name)
+        docstring = ast.get_docstring(node)
+        assert docstring and docstring in inspect.cleandoc(getattr(osh, name).__doc__), name
+    surface = next(node for node in STUBS.body if getattr(node, "name", "") == "Surface")
+    functions = {node.name: ast.get_docstring(node) for node in surface.body
+                 if isinstance(node, ast.FunctionDef)}
+    assert functions["face_size"] == "Vertices of the face."
+    assert functions["evaluate"] == "The points at places, of the shape (places, length)."
+
+
+def test_names_of_options_are_those_that_are_taken():
+    aliases = {node.targets[0].id: node.value for node in STUBS.body if isinstance(node, ast.Assign)}
+    assert len(aliases) > 10
+    for name, value in aliases.items():
+        listed = [constant.value for constant in ast.walk(value.right)
+                  if isinstance(constant, ast.Constant)]
+        assert f"_{value.left.id}" == name
+        assert listed == [member.lower() for member in getattr(osh, value.left.id).__members__]
+
+
+def test_objects_say_what_they_are():
+    refiner = osh.TopologyRefiner([[0, 1, 2, 3]], vtx_boundary_interpolation="edge_only")
+    refiner.refine_uniform(2, full_topology_in_last_level=True)
+    level = refiner.get_level(2)
+    assert repr(level) == "<TopologyLevel depth=2, num_vertices=28, num_faces=13, " \
+        "has_full_topology=True>"
+    assert repr(refiner).startswith("<TopologyRefiner scheme_type=<SchemeType.HEXAGONAL: 0>, ")
+    assert repr(osh.StencilTable(refiner)).startswith("<StencilTable num_stencils=")
+    assert repr(osh.SurfaceFactory(refiner).vertex_surface(0)) == "<Surface face_size=4>"
+    assert repr(osh.LevelTessellation(4, 1)) == \
+        "<LevelTessellation face_size=4, levels=[1, 1, 1, 1, 1]>"
+    refiner.refine_uniform(1)
+    assert "take it again" in repr(level)
