@@ -638,24 +638,26 @@ LimitMask makePlainFaceMask(int size) {
 
 LimitMask FaceLimitMaskFinder::Find(Index face) const {
     int const size = _level.GetFaceSize(face);
-    if (_level.IsHalfFace(face)) {
-        LimitMask mask;
+    bool const isHalf = _level.IsHalfFace(face);
+    if (!isHalf && !Crease::IsInfinite(_level.GetDiagonalSharpness(face))) {
+        return IsPlain(face) ? makePlainFaceMask(size) : findAfterStep(face);
+    }
+    LimitMask mask;
+    if (isHalf) {
         mask.weights = {0.5, 0.5, 0, 0};
         int const corners[4] = {0, 1, 2, 3};
         addHalfTangents(corners, mask);
-        return mask;
-    }
-    float const diagonal = _level.GetDiagonalSharpness(face);
-    if (Crease::IsInfinite(diagonal)) {
-        LimitMask mask;
+    } else {
         mask.weights.assign(size, 0.0);
         mask.weights[kDiagonalStart] = mask.weights[kDiagonalEnd] = 0.5;
         for (auto const &half : kHexagonHalves) {
             addHalfTangents(half, mask);
         }
-        return mask;
     }
-    return IsPlain(face) ? makePlainFaceMask(size) : findAfterStep(face);
+    // The F-face has no vertex with one face.
+    Index const first = _level.faceFirstCorner[face];
+    bool const isBesideOneFace = !_level.GetSectorCorners(first, first + size).empty();
+    return isBesideOneFace ? stepBack(std::move(mask), face) : mask;
 }
 
 // The F-face is a level of its own here: it has no sector corners and no irregular ones, and a
@@ -676,7 +678,11 @@ LimitMask FaceLimitMaskFinder::findAfterStep(Index face) const {
     child.diagonalSharpness[0] =
         Crease(_sdcOptions).SubdivideUniformSharpness(_level.GetDiagonalSharpness(face));
 
-    LimitMask mask = FaceLimitMaskFinder(child, _sdcOptions, _schemeOptions).Find(0);
+    return stepBack(FaceLimitMaskFinder(child, _sdcOptions, _schemeOptions).Find(0), face);
+}
+
+// Makes the mask of the F-face that of the face.
+LimitMask FaceLimitMaskFinder::stepBack(LimitMask mask, Index face) const {
     mask.weights = stepBack(mask.weights, face);
     for (LimitMask::Tangents &tangents : mask.sides) {
         tangents.du = stepBack(tangents.du, face);

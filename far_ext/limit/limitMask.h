@@ -86,6 +86,7 @@ public:
 
 private:
     LimitMask findAfterStep(Far::Index face) const;
+    LimitMask stepBack(LimitMask mask, Far::Index face) const;
     std::vector<double> stepBack(std::vector<double> const &cWeights, Far::Index face) const;
 
     Level const &_level;

@@ -264,8 +264,9 @@ void LimitPatchGatherer::addFace(Index face, int local, bool isRing, LimitPatch 
         patch.faceVerts.push_back(vert);
         // Of the faces further out, only the corners at the neighbours of vertex 0 matter.
         if (isRing || vert < _numComplete) {
-            for (SectorCorner const &sector : _level.GetSectorCorners(corner, corner + 1)) {
-                patch.sectorCorners.push_back({patchFirst + i, sector.sectorSize, sector.weight});
+            for (SectorCorner sector : _level.GetSectorCorners(corner, corner + 1)) {
+                sector.corner = patchFirst + i;
+                patch.sectorCorners.push_back(sector);
             }
             for (IrregularCorner irregular : _level.GetIrregularCorners(corner, corner + 1)) {
                 irregular.corner = patchFirst + i;
@@ -442,7 +443,8 @@ void LimitPatchGatherer::AddSignature(LimitPatch &patch) {
     }
     for (SectorCorner const &sector : patch.sectorCorners) {
         signature.insert(signature.end(),
-                         {sector.corner, getBits(sector.sectorSize), getBits(sector.weight)});
+                         {sector.corner, getBits(sector.sectorSize), getBits(sector.weight),
+                          int(sector.kind)});
     }
     signature.push_back(int(patch.sharpEnds.size()));
     for (SharpEnd const &end : patch.sharpEnds) {

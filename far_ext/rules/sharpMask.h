@@ -32,6 +32,29 @@ constexpr CreaseMask ComputeCreaseMask(bool isLeftLong, bool isRightLong, bool i
     return isBounded ? CreaseMask{3.0 / 8, 3.0 / 8} : CreaseMask{1.0 / 8, 1.0 / 8};
 }
 
+/// \brief The masks of Smooth in the one face that a vertex V of a smooth sharp line has on a side of the line.
+///
+/// Behind an odd number of hexagonal steps that face is two half faces V, W, Q, P and their mirror image, else a
+/// hexagon V, N, A, B, C, M between two A edges.  Weights are in the order of the vertices from the one whose
+/// F-vertex is made.
+///
+/// With the masks of other faces the surface across the line would shrink by .3630 per step and the bend of the
+/// line by .3062, so that the side had no tangent plane but by that bend, and curvature grew by 1.22.  With these and
+/// the bounded mask of ComputeCreaseMask() the line and what lies across shrink by 1/2, the bend by 1/4, the twist
+/// by .2496, and all else by .1127 or less: curvature is bounded.  The third weight in atVertex holds the 1/2; the
+/// others are a fit to half discs of one face, where second derivatives are as even as they get.
+struct OneFaceMask {
+    double atVertex[6];   ///< of the F-vertex at V, for V, N, A, B, C, M
+    double atNeighbor[6]; ///< of that at N, for N, A, B, C, M, V; at M the same the other way
+    double atHalf[4];     ///< of that at P in a half face, for P, V, W, Q
+    double farInHalf[4];  ///< of that at Q, for Q, W, V, P
+};
+inline constexpr OneFaceMask kOneFaceMask = {
+    {61.4444 / 256, 57.5 / 256, 39.7778 / 256, 0, 39.7778 / 256, 57.5 / 256},
+    {43.5 / 256, 124.5 / 256, 0, 46.0 / 256, 0, 42.0 / 256},
+    {94.5 / 256, 75.0 / 256, 34.5 / 256, 52.0 / 256},
+    {122.0 / 256, 39.5 / 256, 78.0 / 256, 16.5 / 256}};
+
 /// @name The masks of FirstStep::Truncate along a sharp line
 /// New points have the second moment 2/9 along the line, as all have in a regular mesh of triangles.
 /// @{

@@ -157,7 +157,7 @@ void BuildFVarChannel(Level const &mesh, Index numValues, Buffer<Index> faceValu
         });
     }
     findVertexSharpness(sharpness, level);
-    ComputeSharpMasks(sdcOptions, level);
+    ComputeSharpMasks({sdcOptions, FaceMask::Average}, level); // with others level 0 has the same
     channel.faceValues = std::move(faceValues);
 }
 

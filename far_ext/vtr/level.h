@@ -43,15 +43,26 @@ struct SharpVertex {
     double creaseShare;
 };
 
-/// \brief A corner whose F-vertex is drawn towards its vertex, because that has many faces between
-/// two sharp edges: see ComputeSectorShrink in mask.h.
+/// \brief A corner whose F-vertex has a mask of its own, because a vertex has many faces between two sharp edges, or,
+/// on a smooth line and with FaceMask::Smooth, one: see ComputeSectorShrink in mask.h, kOneFaceMask in sharpMask.h.
 ///
 /// Edges whose sharpness is below 1 take part in proportion to it: the corner has an entry for each
 /// set of edges that are at least as sharp as some threshold in (0, 1].
 struct SectorCorner {
+    /// Where the vertex is, seen from the corner.
+    enum Kind : std::int32_t {
+        kInWide, ///< the corner's own, with many faces
+        // With one face:
+        kAtOne,     ///< the corner's own
+        kBehindOne, ///< before the corner in the face
+        kBeforeOne, ///< behind the corner in the face
+        kBesideOne, ///< in a half face, or half of a hexagon, the end of the long side beside the corner
+        kFarFromOne ///< there, the other end
+    };
     Far::Index corner;
     float sectorSize; ///< faces between the sharp edges; a half hexagon counts half
-    float weight;     ///< share of the thresholds; the entries of a corner sum to 1 at most
+    float weight; ///< share of the thresholds; the entries of a corner and kind sum to 1 at most
+    Kind kind;
 };
 
 /// \brief One of the sharp edges that meet in a vertex of a patch where some of them may be missing.
@@ -241,7 +252,7 @@ struct Level {
             [](SharpVertex const &sharp, Index vert) { return sharp.vert < vert; });
         return found != sharpVerts.end() && found->vert == v ? &*found : nullptr;
     }
-    /// The entries of the corners from \p begin to \p end - 1 that lie in wide sectors.
+    /// The entries of the corners from \p begin to \p end - 1.
     OpenSubdiv::Vtr::ConstArray<SectorCorner> GetSectorCorners(Index begin, Index end) const {
         auto const isBefore = [](SectorCorner const &sector, Index c) { return sector.corner < c; };
         auto const first =
@@ -383,7 +394,7 @@ struct Level {
     std::vector<LineEdge> lineEdges;     ///< ascending; of levels with full topology
 
     std::vector<SharpVertex> sharpVerts;     ///< ascending; all with a rule but RULE_SMOOTH
-    std::vector<SectorCorner> sectorCorners; ///< ascending
+    std::vector<SectorCorner> sectorCorners; ///< ascending; of a corner by kind
     /// Of patches alone; vertices ascend, and edges are in the order around them.
     std::vector<SharpEnd> sharpEnds;
 

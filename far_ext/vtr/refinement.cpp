@@ -33,7 +33,7 @@ void BeginRefinement(Level const &parent, LevelSizes const &sizes, bool fullTopo
 void EndRefinement(TagOptions options, Refinement const &refinement, Level &child) {
     RefineTags(refinement, options.sdcOptions, child);
     if (child.hasFullTopology) {
-        ComputeSharpMasks(options.sdcOptions, child);
+        ComputeSharpMasks(options, child);
     } else {
         child.sharpVerts.clear();
         child.sectorCorners.clear();

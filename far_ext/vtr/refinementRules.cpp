@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "refinementRules.h"
 
+#include "far_ext/rules/sharpMask.h"
 #include "indexSet.h"
 
 #include <cstddef>
@@ -46,7 +47,7 @@ private:
 struct FaceTags {
     Index firstCorner;
     int size;
-    bool isHalf;    // then nothing else matters
+    bool isHalf;
     float diagonal; // share of the rule of a sharp diagonal
     SectorCorner const *sectors;
     SectorCorner const *endSectors;
@@ -54,14 +55,12 @@ struct FaceTags {
     IrregularCorner const *endIrregular;
 
     bool operator==(FaceTags const &other) const {
-        if (isHalf || other.isHalf) {
-            return isHalf && other.isHalf;
-        }
-        return size == other.size && diagonal == other.diagonal &&
+        return isHalf == other.isHalf && size == other.size && diagonal == other.diagonal &&
                std::equal(sectors, endSectors, other.sectors, other.endSectors,
                           [&](SectorCorner const &x, SectorCorner const &y) {
                               return x.corner - firstCorner == y.corner - other.firstCorner &&
-                                     x.weight == y.weight && x.sectorSize == y.sectorSize;
+                                     x.weight == y.weight && x.sectorSize == y.sectorSize &&
+                                     x.kind == y.kind;
                           }) &&
                std::equal(irregular, endIrregular, other.irregular, other.endIrregular,
                           [&](IrregularCorner const &x, IrregularCorner const &y) {
@@ -73,11 +72,8 @@ struct FaceTags {
 
     struct Hash {
         std::size_t operator()(FaceTags const &tags) const {
-            if (tags.isHalf) {
-                return 0;
-            }
             constexpr std::uint64_t kFactor = 0x9e3779b97f4a7c15u; // of Fibonacci hashing
-            std::uint64_t hash = std::uint64_t(tags.size);
+            auto hash = std::uint64_t(tags.isHalf ? 0 : tags.size);
             auto const add = [&hash](float weight, Index rest) {
                 std::uint64_t const high = getBits(weight);
                 hash = (hash ^ (high << 32 | std::uint32_t(rest))) * kFactor;
@@ -85,7 +81,7 @@ struct FaceTags {
             add(tags.diagonal, 0);
             for (SectorCorner const *sector = tags.sectors; sector != tags.endSectors; ++sector) {
                 add(sector->weight, sector->corner - tags.firstCorner);
-                add(sector->sectorSize, 0);
+                add(sector->sectorSize, sector->kind);
             }
             for (IrregularCorner const *corner = tags.irregular; corner != tags.endIrregular;
                  ++corner) {
@@ -201,8 +197,8 @@ public:
         std::unordered_map<FaceTags, int, FaceTags::Hash> ruleOfTags;
         FaceTags before = {}; // of the last face: those that follow one another are mostly alike
         FaceTags tags = {};
-        tags.endSectors = _level.sectorCorners.data();
-        tags.endIrregular = _level.irregularCorners.data();
+        tags.sectors = tags.endSectors = _level.sectorCorners.data();
+        tags.irregular = tags.endIrregular = _level.irregularCorners.data();
         int rule = kCirculant;
         while (nextSharp != sharpFaces.end() || nextCorner != endCorners) {
             Index face = nextSharp != sharpFaces.end() ? *nextSharp : _level.numFaces;
@@ -233,8 +229,21 @@ private:
     void readTags(Index face, FaceTags &tags) const;
     void addRule(FaceTags const &tags);
     void addRow(std::vector<double> const &row);
+    static void addMask(double const (&mask)[kHexagon], int corner, bool isBackwards, double share,
+                        std::vector<double> &row);
     void addIrregularWeights(IrregularCorner const &irregular, int corner,
                              std::vector<double> &row);
+    // The entries of one corner.
+    struct Sectors {
+        SectorCorner const *first;
+        SectorCorner const *behind;
+
+        SectorCorner const *begin() const { return first; }
+        SectorCorner const *end() const { return behind; }
+    };
+    static void addOneFace(Sectors sectors, int corner, std::vector<double> &row);
+    void addOneFaceHalf(Sectors sectors, int const (&half)[kTrapezoid], int place,
+                        std::vector<double> &row) const;
 
     RefinementRules &_rules;
     Level const &_level;
@@ -289,8 +298,10 @@ void RefinementRules::DenseRuleMaker::readTags(Index face, FaceTags &tags) const
             ++behind;
         }
     };
-    readOn(_level.sectorCorners, tags.sectors, tags.endSectors);
-    readOn(_level.irregularCorners, tags.irregular, tags.endIrregular);
+    if (_isVertex) {
+        readOn(_level.sectorCorners, tags.sectors, tags.endSectors);
+        readOn(_level.irregularCorners, tags.irregular, tags.endIrregular);
+    }
 }
 
 void RefinementRules::DenseRuleMaker::addRow(std::vector<double> const &row) {
@@ -302,25 +313,26 @@ void RefinementRules::DenseRuleMaker::addRow(std::vector<double> const &row) {
 void RefinementRules::DenseRuleMaker::addRule(FaceTags const &tags) {
     int const size = tags.size;
     _rules._denseRules.push_back({size, _rules._rows.size()});
-    if (tags.isHalf) {
-        for (auto const &ofCorner : _halfFaceWeights) {
-            addRow({ofCorner, ofCorner + kTrapezoid});
-        }
-        return;
-    }
-    double const sharp = tags.diagonal;
+    constexpr int kHalfFace[kTrapezoid] = {0, 1, 2, 3};
+    double const sharp = tags.isHalf ? 1 : tags.diagonal;
     SectorCorner const *sector = tags.sectors;
     IrregularCorner const *irregular = tags.irregular;
     for (int i = 0; i < size; ++i) {
         Index const corner = tags.firstCorner + i;
         double towards = 0;
+        bool hasOneFace = false;
+        SectorCorner const *const sectors = sector;
         for (; sector != tags.endSectors && sector->corner == corner; ++sector) {
-            towards += sector->weight * (1 - ComputeSectorShrink(_faceMask, sector->sectorSize));
+            if (sector->kind == SectorCorner::kInWide) {
+                towards +=
+                    sector->weight * (1 - ComputeSectorShrink(_faceMask, sector->sectorSize));
+            }
+            hasOneFace = hasOneFace || sector->kind != SectorCorner::kInWide;
         }
         bool const isIrregular = irregular != tags.endIrregular && irregular->corner == corner;
         std::size_t const circulantRow =
             _rules._circulants[std::size_t(size)] + std::size_t(size - i);
-        if (sharp == 0 && towards == 0 && !isIrregular) {
+        if (sharp == 0 && towards == 0 && !hasOneFace && !isIrregular) {
             _rules._rows.push_back(circulantRow);
             continue;
         }
@@ -334,11 +346,16 @@ void RefinementRules::DenseRuleMaker::addRule(FaceTags const &tags) {
             // Of a hexagon cut by its diagonal 0-3, each half follows the mask of a half face V, W, Q, P:
             // V and W are the ends of the diagonal, Q and P the two vertices between them.  At the ends
             // both halves have the same weights.
-            auto const &half = kHexagonHalves[i < kDiagonalEnd ? 1 : 0];
+            auto const &half = tags.isHalf ? kHalfFace : kHexagonHalves[i < kDiagonalEnd ? 1 : 0];
             int const place = int(std::find(half, half + kTrapezoid, i) - half);
             for (int j = 0; j < kTrapezoid; ++j) {
                 row[std::size_t(half[j])] += sharp * _halfFaceWeights[place][j];
             }
+            if (hasOneFace) {
+                addOneFaceHalf({sectors, sector}, half, place, row);
+            }
+        } else if (hasOneFace) {
+            addOneFace({sectors, sector}, i, row);
         }
         if (isIrregular) {
             addIrregularWeights(*irregular++, i, row);
@@ -347,25 +364,67 @@ void RefinementRules::DenseRuleMaker::addRule(FaceTags const &tags) {
     }
 }
 
+// The corner is number \p corner of a hexagon, whose weights these are so far.
+void RefinementRules::DenseRuleMaker::addOneFace(Sectors sectors, int corner,
+                                                 std::vector<double> &row) {
+    double share = 0;
+    SectorCorner::Kind kind = SectorCorner::kInWide;
+    for (SectorCorner const &sector : sectors) {
+        if (sector.kind != SectorCorner::kInWide) {
+            share += sector.weight;
+            kind = sector.kind;
+        }
+    }
+    addMask(kind == SectorCorner::kAtOne ? kOneFaceMask.atVertex : kOneFaceMask.atNeighbor, corner,
+            kind == SectorCorner::kBeforeOne, share, row);
+}
+
+// The corner is number \p place of half a face, whose mask has the share of its sharp side in the row.  Beside one end
+// of the line, that end's mask goes before the other's.
+void RefinementRules::DenseRuleMaker::addOneFaceHalf(Sectors sectors, int const (&half)[kTrapezoid],
+                                                     int place, std::vector<double> &row) const {
+    double beside = 0;
+    double farFrom = 0;
+    for (SectorCorner const &sector : sectors) {
+        beside += sector.kind == SectorCorner::kBesideOne ? sector.weight : 0;
+        farFrom += sector.kind == SectorCorner::kFarFromOne ? sector.weight : 0;
+    }
+    farFrom = std::max(0.0, farFrom - beside);
+    // From the corner by the end beside it and the other end to the corner next to it.
+    int const places[kTrapezoid] = {place, 3 - place, place - 2, 5 - place};
+    for (int j = 0; j < kTrapezoid; ++j) {
+        double const plain = _halfFaceWeights[place][places[j]];
+        row[std::size_t(half[places[j]])] += beside * (kOneFaceMask.atHalf[j] - plain) +
+                                             farFrom * (kOneFaceMask.farInHalf[j] - plain);
+    }
+}
+
+// Mixes a share of a hexagon's mask into a row of its corner, forward from there or backward.
+void RefinementRules::DenseRuleMaker::addMask(double const (&mask)[kHexagon], int corner,
+                                              bool isBackwards, double share,
+                                              std::vector<double> &row) {
+    for (int j = 0; j < kHexagon; ++j) {
+        double &weight = row[std::size_t((corner + (isBackwards ? kHexagon - j : j)) % kHexagon)];
+        weight += share * (mask[j] - weight);
+    }
+}
+
 // The corner is number \p corner of its face, whose weights these are so far.
 void RefinementRules::DenseRuleMaker::addIrregularWeights(IrregularCorner const &irregular,
                                                           int corner, std::vector<double> &row) {
     using Kind = IrregularCorner::Kind;
     Kind const kind = irregular.kind;
-    double const *mask = nullptr;
+    double const(*mask)[kHexagon] = nullptr;
     if (IrregularCorner::IsAtQuad(kind)) {
         bool const isAtEdge = kind == Kind::kAlongQuad || kind == Kind::kBehindQuad;
-        mask = _quadMask.beside[isAtEdge ? 0 : 1];
+        mask = &_quadMask.beside[isAtEdge ? 0 : 1];
     } else {
         IrregularVertexMask const &ofVertex = _masks.Get(irregular.numFaces, irregular.facesAround);
-        mask = kind == Kind::kAtVertex ? ofVertex.atVertex : ofVertex.atNeighbor;
+        mask = kind == Kind::kAtVertex ? &ofVertex.atVertex : &ofVertex.atNeighbor;
     }
     bool const isBackwards =
         kind == Kind::kBeforeVertex || kind == Kind::kBehindQuad || kind == Kind::kOneBeforeQuad;
-    for (int j = 0; j < kHexagon; ++j) {
-        double &weight = row[std::size_t((corner + (isBackwards ? kHexagon - j : j)) % kHexagon)];
-        weight += irregular.weight * (mask[j] - weight);
-    }
+    addMask(*mask, corner, isBackwards, irregular.weight, row);
 }
 
 RefinementRules::RefinementRules(Level const &parent, HexSchemeOptions schemeOptions,

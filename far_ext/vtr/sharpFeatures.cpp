@@ -9,6 +9,7 @@
 #include "vertexFan.h"
 
 #include <algorithm>
+#include <tuple>
 
 namespace OpenSubdivHex::FarExt::internal {
 
@@ -128,10 +129,12 @@ bool isOneFaceBetween(Level const &level, Index vert, Index const neighbors[2]) 
     return false;
 }
 
-SharpVertex creaseMask(Level const &level, Index vert, SharpEdges const &edges, int const pair[2]) {
+SharpVertex creaseMask(Level const &level, FaceMask faceMask, Index vert, SharpEdges const &edges,
+                       int const pair[2]) {
     Index const neighbors[2] = {edges.neighbors[pair[0]], edges.neighbors[pair[1]]};
-    bool const isBounded = level.numHexagonalSteps >= kNumStepsToConstantMasks &&
-                           !isNonManifold(level, vert) && !isOneFaceBetween(level, vert, neighbors);
+    bool const isBounded =
+        level.numHexagonalSteps >= kNumStepsToConstantMasks && !isNonManifold(level, vert) &&
+        (faceMask == FaceMask::Smooth || !isOneFaceBetween(level, vert, neighbors));
     auto const [left, right] =
         ComputeCreaseMask(edges.isLong[pair[0]], edges.isLong[pair[1]], isBounded);
     return {vert,
@@ -144,15 +147,16 @@ SharpVertex creaseMask(Level const &level, Index vert, SharpEdges const &edges, 
             1};
 }
 
-SharpVertex maskOfRule(Level const &level, Crease const &creasing, Crease::Rule rule, Index vert,
-                       SharpEdges const &edges, std::vector<float> const &sharpness) {
+SharpVertex maskOfRule(Level const &level, FaceMask faceMask, Crease const &creasing,
+                       Crease::Rule rule, Index vert, SharpEdges const &edges,
+                       std::vector<float> const &sharpness) {
     if (rule == Crease::RULE_CORNER) {
         return cornerMask(vert);
     }
     if (rule == Crease::RULE_CREASE) {
         int pair[2] = {0, 1};
         creasing.GetSharpEdgePairOfCrease(sharpness.data(), int(sharpness.size()), pair);
-        return creaseMask(level, vert, edges, pair);
+        return creaseMask(level, faceMask, vert, edges, pair);
     }
     SharpVertex mask = smoothMask(vert, level.GetNumVertexFaces(vert));
     mask.rule = rule;
@@ -184,8 +188,34 @@ struct SharpnessLayer {
     bool IsSharp(float sharpness) const { return sharpness >= upper; }
 };
 
-// Adds the corners of wide sectors between two edges of a fan that are sharp in the layer.
-void addSectorCorners(Level const &level, SharpnessLayer layer, FanItems &fan,
+// Adds the corners with masks of their own in a sector of one face: a hexagon, or two halves.
+void addOneFaceCorners(Level const &level, FanItem const *begin, FanItem const *end, float weight,
+                       std::vector<SectorCorner> &result) {
+    constexpr int kHalfFace[4] = {0, 1, 2, 3};
+    auto const add = [&](Index corner, SectorCorner::Kind kind) {
+        result.push_back({corner, 1, weight, kind});
+    };
+    for (FanItem const *item = begin; item != end; ++item) {
+        if (!item->isFace) {
+            continue;
+        }
+        if (!item->isHalf) {
+            add(item->corner, SectorCorner::kAtOne);
+            add(level.GetNextCorner(item->face, item->corner), SectorCorner::kBehindOne);
+            add(level.GetPrevCorner(item->face, item->corner), SectorCorner::kBeforeOne);
+            continue;
+        }
+        Index const first = level.faceFirstCorner[item->face];
+        auto const &places = item->half < 0 ? kHalfFace : kHexagonHalves[item->half];
+        bool const isStart = item->corner == first + places[0];
+        add(first + places[isStart ? 3 : 2], SectorCorner::kBesideOne);
+        add(first + places[isStart ? 2 : 3], SectorCorner::kFarFromOne);
+    }
+}
+
+// Adds the corners of wide sectors between two edges of a fan that are sharp in the layer; and those of
+// sectors of one face, where these have a share.
+void addSectorCorners(Level const &level, SharpnessLayer layer, float oneFaceShare, FanItems &fan,
                       std::vector<SectorCorner> &result) {
     std::vector<FanItem> &items = fan.items;
     auto const isSharpInLayer = [&](FanItem const &item) { return layer.IsSharp(item.sharpness); };
@@ -220,8 +250,11 @@ void addSectorCorners(Level const &level, SharpnessLayer layer, FanItems &fan,
             lastCorner = item->corner;
             float const lower = std::max(layer.lower, level.GetDiagonalSharpness(item->face));
             if (lower < layer.upper) {
-                result.push_back({item->corner, size, layer.upper - lower});
+                result.push_back({item->corner, size, layer.upper - lower, SectorCorner::kInWide});
             }
+        }
+        if (size == 1 && oneFaceShare > 0) {
+            addOneFaceCorners(level, &*start, &*start + (end - start), oneFaceShare, result);
         }
         start = end;
     }
@@ -230,17 +263,22 @@ void addSectorCorners(Level const &level, SharpnessLayer layer, FanItems &fan,
 // The masks of one sharp vertex after the other.
 class SharpMaskFinder {
 public:
-    SharpMaskFinder(Level const &level, Sdc::Options sdcOptions)
-        : _level(level), _creasing(sdcOptions) {}
+    SharpMaskFinder(Level const &level, TagOptions options)
+        : _level(level), _faceMask(options.faceMask), _creasing(options.sdcOptions),
+          _hasOneFaceMasks(_faceMask == FaceMask::Smooth && level.numHexagonalSteps > 0) {}
 
-    // Those of a vertex that may need a rule of its own.
+    // That of a vertex that may need a rule of its own.
     SharpVertex Find(Index vert);
-    // Adds the corners of wide sectors at a vertex where sharp edges meet.
+    // Adds the corners of wide sectors, and of those of one face, at the vertex that was found last.
     void AddSectorCorners(Index vert, std::vector<SectorCorner> &result);
 
 private:
+    float findOneFaceShare(Index vert, SharpnessLayer layer) const;
+
     Level const &_level;
+    FaceMask const _faceMask;
     Crease const _creasing;
+    bool const _hasOneFaceMasks;
     // What is found at a vertex, in memory that stays.
     FanItems _fan;
     SharpEdges _edges;
@@ -254,7 +292,8 @@ SharpVertex SharpMaskFinder::Find(Index vert) {
     float const *const sharpness = _edges.sharpness.data();
     Crease::Rule const rule =
         _creasing.DetermineVertexVertexRule(vertSharpness, _edges.GetSize(), sharpness);
-    SharpVertex const mask = maskOfRule(_level, _creasing, rule, vert, _edges, _edges.sharpness);
+    SharpVertex const mask =
+        maskOfRule(_level, _faceMask, _creasing, rule, vert, _edges, _edges.sharpness);
 
     float const childVertSharpness = _creasing.SubdivideVertexSharpness(vertSharpness);
     _childSharpness.resize(_edges.sharpness.size());
@@ -267,12 +306,23 @@ SharpVertex SharpMaskFinder::Find(Index vert) {
     }
     float const weight = _creasing.ComputeFractionalWeightAtVertex(
         vertSharpness, childVertSharpness, _edges.GetSize(), sharpness, _childSharpness.data());
-    return blend(mask, maskOfRule(_level, _creasing, childRule, vert, _edges, _childSharpness),
+    return blend(mask,
+                 maskOfRule(_level, _faceMask, _creasing, childRule, vert, _edges, _childSharpness),
                  weight);
 }
 
+// How much of a layer lets a smooth line go through the vertex.
+float SharpMaskFinder::findOneFaceShare(Index vert, SharpnessLayer layer) const {
+    auto const numSharp = std::count_if(_edges.sharpness.begin(), _edges.sharpness.end(),
+                                        [&](float sharpness) { return layer.IsSharp(sharpness); });
+    if (!_hasOneFaceMasks || numSharp != 2 || isNonManifold(_level, vert)) {
+        return 0;
+    }
+    return std::max(0.0f, layer.upper - std::max(layer.lower, _level.GetVertexSharpness(vert)));
+}
+
 void SharpMaskFinder::AddSectorCorners(Index vert, std::vector<SectorCorner> &result) {
-    if (_level.GetNumVertexFaces(vert) < kMinShrunkSector) {
+    if (!_hasOneFaceMasks && _level.GetNumVertexFaces(vert) < kMinShrunkSector) {
         return;
     }
     // Of each fan, since a sector may lie between two ends of a fan on the same line.
@@ -290,8 +340,10 @@ void SharpMaskFinder::AddSectorCorners(Index vert, std::vector<SectorCorner> &re
     for (int i = 0; i + 1 < int(_layers.size()); ++i) {
         if (_layers[i] > lower) {
             SharpnessLayer const layer = {lower, _layers[i]};
-            ForEachFanItems(_level, vert, _fan,
-                            [&](FanItems &fan) { addSectorCorners(_level, layer, fan, result); });
+            float const oneFaceShare = findOneFaceShare(vert, layer);
+            ForEachFanItems(_level, vert, _fan, [&](FanItems &fan) {
+                addSectorCorners(_level, layer, oneFaceShare, fan, result);
+            });
             lower = layer.upper;
         }
     }
@@ -299,7 +351,7 @@ void SharpMaskFinder::AddSectorCorners(Index vert, std::vector<SectorCorner> &re
 
 } // namespace
 
-void ComputeSharpMasks(Sdc::Options sdcOptions, Level &level) {
+void ComputeSharpMasks(TagOptions options, Level &level) {
     constexpr Index kRange = 256; // of vertices, which take some hundred nanoseconds each
     struct Masks {
         std::vector<SharpVertex> verts;
@@ -309,7 +361,7 @@ void ComputeSharpMasks(Sdc::Options sdcOptions, Level &level) {
     std::vector<Masks> masksOfRanges(
         std::size_t(GetNumParallelRanges(Index(verts.size()), kRange)));
     ParallelForRange(
-        Index(verts.size()), [&] { return SharpMaskFinder(level, sdcOptions); },
+        Index(verts.size()), [&] { return SharpMaskFinder(level, options); },
         [&](SharpMaskFinder &finder, Index begin, Index end) {
             Masks &masks = masksOfRanges[std::size_t(begin / kRange)];
             for (Index i = begin; i < end; ++i) {
@@ -328,9 +380,10 @@ void ComputeSharpMasks(Sdc::Options sdcOptions, Level &level) {
         level.sectorCorners.insert(level.sectorCorners.end(), masks.corners.begin(),
                                    masks.corners.end());
     }
-    std::stable_sort(
-        level.sectorCorners.begin(), level.sectorCorners.end(),
-        [](SectorCorner const &a, SectorCorner const &b) { return a.corner < b.corner; });
+    std::stable_sort(level.sectorCorners.begin(), level.sectorCorners.end(),
+                     [](SectorCorner const &a, SectorCorner const &b) {
+                         return std::tie(a.corner, a.kind) < std::tie(b.corner, b.kind);
+                     });
 }
 
 std::vector<float> GatherSharpness(Level const &level, Index vert) {

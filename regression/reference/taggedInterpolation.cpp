@@ -17,6 +17,16 @@ namespace {
 /// How far new points in wide sectors are drawn to the vertex, by face and place.
 using Pulls = std::map<std::pair<int, int>, double>;
 
+/// Shares of the masks beside vertices of smooth lines that have one face on a side, by where the vertex is.
+struct Narrow {
+    double self = 0; ///< the corner's own
+    double before =
+        0; ///< at the corner before it in the face; in a half face the near end of the line
+    double behind = 0; ///< at the corner behind; in a half face not used
+    double far = 0;    ///< in a half face the far end of the line
+};
+using Narrows = std::map<std::pair<int, int>, Narrow>;
+
 /// The factor of a sector of \p size faces: P = factor * mask + (1 - factor) V.
 double sectorFactor(ReferenceMask mask, double size) {
     double const c = std::cos(std::acos(-1.0) / size);
@@ -28,9 +38,10 @@ double lineSharpness(TaggedMesh const &mesh, Face const &face) {
     return face.isHalf ? double(mesh.edges[face.edges[0]].sharpness) : 0;
 }
 
-/// Adds \p share of the pulls at a vertex as if all edges of less than \p threshold were smooth.
-void addPulls(TaggedMesh const &mesh, ReferenceMask mask, int vertex, double threshold,
-              double share, Pulls &pulls) {
+/// Calls visit(corners, size) for the sectors at a vertex, counter-clockwise, as if all edges of less than
+/// \p threshold were smooth.
+template <typename Visit>
+void visitSectors(TaggedMesh const &mesh, int vertex, double threshold, Visit const &visit) {
     for (Side start : mesh.vertices[vertex].corners) {
         Face const &startFace = mesh.faces[start.face];
         Edge const &startEdge = mesh.edges[startFace.edges[start.place]];
@@ -57,27 +68,69 @@ void addPulls(TaggedMesh const &mesh, ReferenceMask mask, int vertex, double thr
         }
         // All around, with one sharp edge, lies no sector; a boundary may end where it began.
         bool const isAllAround = edge == &startEdge && edge->sides.size() == 2;
-        if (edge->sharpness < threshold || isAllAround || size < 3) {
-            continue;
-        }
-        for (Side pulled : corners) {
-            // Halves are one face while their line is smooth.
-            if (lineSharpness(mesh, mesh.faces[pulled.face]) < threshold) {
-                pulls[{pulled.face, pulled.place}] += share * (1 - sectorFactor(mask, size));
-            }
+        if (edge->sharpness >= threshold && !isAllAround) {
+            visit(corners, size);
         }
     }
 }
 
+/// Adds \p share of the pulls at a vertex.
+void addPulls(TaggedMesh const &mesh, ReferenceMask mask, int vertex, double threshold,
+              double share, Pulls &pulls) {
+    visitSectors(mesh, vertex, threshold, [&](std::vector<Side> const &corners, double size) {
+        for (Side pulled : corners) {
+            // Halves are one face while their line is smooth.
+            if (size >= 3 && lineSharpness(mesh, mesh.faces[pulled.face]) < threshold) {
+                pulls[{pulled.face, pulled.place}] += share * (1 - sectorFactor(mask, size));
+            }
+        }
+    });
+}
+
+/// Adds the share of thresholds from \p last to \p threshold, as far as a smooth line goes through the vertex.
+void addNarrows(TaggedMesh const &mesh, int vertex, double threshold, double last,
+                Narrows &narrows) {
+    TaggedMesh::Vertex const &tags = mesh.vertices[vertex];
+    double const share = threshold - std::max(last, double(tags.sharpness));
+    std::vector<SharpEdge> const edges = sharpEdges(mesh, vertex);
+    auto const numSharp = std::count_if(edges.begin(), edges.end(), [&](SharpEdge const &edge) {
+        return edge.sharpness >= threshold;
+    });
+    if (share <= 0 || numSharp != 2 || tags.isNonManifold) {
+        return;
+    }
+    visitSectors(mesh, vertex, threshold, [&](std::vector<Side> const &corners, double size) {
+        for (Side corner : corners) {
+            if (size != 1) {
+                continue;
+            }
+            int const place = corner.place;
+            if (mesh.faces[corner.face].isHalf) {
+                narrows[{corner.face, 3 - place}].before += share;
+                narrows[{corner.face, 2 + place}].far += share;
+            } else {
+                narrows[{corner.face, place}].self += share;
+                narrows[{corner.face, (place + 1) % 6}].before += share;
+                narrows[{corner.face, (place + 5) % 6}].behind += share;
+            }
+        }
+    });
+}
+
 /// An edge of sharpness s below 1 is sharp with share s and smooth with share 1 - s, the less sharp
 /// edges whenever a sharper one is.
-Pulls findPulls(TaggedMesh const &mesh, ReferenceMask mask) {
+std::set<double> findThresholds(TaggedMesh const &mesh) {
     std::set<double> thresholds{1};
     for (Edge const &edge : mesh.edges) {
         if (edge.sharpness > 0 && edge.sharpness < 1) {
             thresholds.insert(edge.sharpness);
         }
     }
+    return thresholds;
+}
+
+Pulls findPulls(TaggedMesh const &mesh, ReferenceMask mask) {
+    std::set<double> const thresholds = findThresholds(mesh);
     Pulls pulls;
     for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
         double last = 0;
@@ -87,6 +140,19 @@ Pulls findPulls(TaggedMesh const &mesh, ReferenceMask mask) {
         }
     }
     return pulls;
+}
+
+Narrows findNarrows(TaggedMesh const &mesh) {
+    std::set<double> const thresholds = findThresholds(mesh);
+    Narrows narrows;
+    for (std::size_t v = 0; v < mesh.vertices.size() && mesh.numHexagonalSteps > 0; ++v) {
+        double last = 0;
+        for (double threshold : thresholds) {
+            addNarrows(mesh, int(v), threshold, last, narrows);
+            last = threshold;
+        }
+    }
+    return narrows;
 }
 
 /// What of a mesh follows the rules of Smooth for hexagons beside what is not of their lattice.
@@ -202,6 +268,7 @@ public:
     ReferenceValues Run() {
         bool const isPlain = _isVarying || _child.madeBy != ReferenceScheme::Hexagonal;
         Pulls const pulls = isPlain ? Pulls() : findPulls(_mesh, _mask);
+        _narrows = hasIrregularRules() ? findNarrows(_mesh) : Narrows();
         for (std::size_t v = 0; v < _child.vertexOrigins.size(); ++v) {
             TaggedMesh::VertexOrigin const &origin = _child.vertexOrigins[v];
             if (origin.face < 0) {
@@ -246,7 +313,8 @@ private:
             Point const smooth = isQuad
                                      ? NewPointOfQuad(_mesh.numHexagonalSteps, points, corner.place)
                                      : maskPoint(points, corner.place);
-            Point const plain = towards * vertex + (1 - towards) * smooth;
+            Point const plain =
+                atOneFace(points, corner, towards * vertex + (1 - towards) * smooth);
             if (!hasIrregularRules() || points.size() != 6) {
                 return plain;
             }
@@ -258,7 +326,7 @@ private:
         }
         Edge const &line = _mesh.edges[face.edges[0]];
         if (line.sides.size() == 1) {
-            return halfPoint(face, corner.place);
+            return halfPoint(face, corner.place) + fromOneFace(face, corner);
         }
         // The hexagon that the two halves make: V, R, S, W, Q, P.
         bool const isFirst = line.sides[0].face == corner.face;
@@ -270,7 +338,7 @@ private:
         Point const smooth = maskPoint(hexagon, places[corner.place]);
         double const sharp = _isVarying ? 0 : std::min(1.0, double(line.sharpness));
         Point const plain = sharp * halfPoint(face, corner.place) + towards * vertex +
-                            (1 - sharp - towards) * smooth;
+                            (1 - sharp - towards) * smooth + fromOneFace(face, corner);
         if (!hasIrregularRules()) {
             return plain;
         }
@@ -310,6 +378,44 @@ private:
         Point const qGhost = (3 * v + w) / 2 - p;
         Point const pGhost = (v + 3 * w) / 2 - q;
         return maskPoint({v, qGhost, pGhost, w, q, p}, place == 2 ? 4 : 5);
+    }
+
+    /// In 256ths, going around from the new point's corner towards or away from the vertex with one face.
+    Point atOneFace(std::vector<Point> const &face, Side corner, Point const &plain) const {
+        auto const found = _narrows.find({corner.face, corner.place});
+        if (found == _narrows.end()) {
+            return plain;
+        }
+        double const weightsOfV[6] = {61.4444, 57.5, 39.7778, 0, 39.7778, 57.5}; // V N A B C M
+        double const weightsOfN[6] = {42, 43.5, 124.5, 0, 46, 0};
+        Narrow const &narrow = found->second;
+        int const vertex = corner.place + (narrow.self > 0 ? 0 : narrow.before > 0 ? 5 : 1);
+        Point point = Point::Zero(plain.size());
+        for (int j = 0; j < 6; ++j) {
+            // From V towards the corner.
+            int const place = vertex + (narrow.behind > 0 ? 6 - j : j);
+            point += (narrow.self > 0 ? weightsOfV : weightsOfN)[j] / 256 * face[place % 6];
+        }
+        double const share = narrow.self + narrow.before + narrow.behind;
+        return share * point + (1 - share) * plain;
+    }
+
+    /// What vertices with one face change in half a face.
+    Point fromOneFace(Face const &face, Side corner) const {
+        auto const found = _narrows.find({corner.face, corner.place});
+        if (found == _narrows.end()) {
+            return Point::Zero(_values.cols());
+        }
+        std::vector<Point> const points = pointsOf(face.vertices);
+        Point const &self = points[corner.place];
+        Point const &twin = points[corner.place == 3 ? 2 : 3];
+        Point const &end = points[corner.place == 3 ? 0 : 1];
+        Point const &otherEnd = points[corner.place == 3 ? 1 : 0];
+        Point const beside = (94.5 * self + 75 * end + 34.5 * otherEnd + 52 * twin) / 256;
+        Point const farFrom = (122 * self + 39.5 * end + 78 * otherEnd + 16.5 * twin) / 256;
+        double const near = found->second.before;
+        double const far = std::max(0.0, found->second.far - near); // the near end goes first
+        return near * beside + far * farFrom - (near + far) * halfPoint(face, corner.place);
     }
 
     Point smoothVertex(int v) const {
@@ -356,8 +462,9 @@ private:
             return (26 * vertex + 3 * atA + 3 * atB) / 32;
         }
         if (!a.isLong && !b.isLong) {
-            return _mesh.numHexagonalSteps < 4 || _mesh.vertices[v].isNonManifold ||
-                           isFaceBetween(v, a.neighbor, b.neighbor)
+            bool const hasOneFace =
+                _mask != ReferenceMask::Smooth && isFaceBetween(v, a.neighbor, b.neighbor);
+            return _mesh.numHexagonalSteps < 4 || _mesh.vertices[v].isNonManifold || hasOneFace
                        ? Point((6 * vertex + atA + atB) / 8)
                        : Point((2 * vertex + 3 * atA + 3 * atB) / 8);
         }
@@ -392,6 +499,7 @@ private:
     bool _isVarying;
     ReferenceValues const &_values;
     Irregularities const _irregularities;
+    Narrows _narrows;
     ReferenceValues _result;
 };
 
