@@ -299,10 +299,6 @@ private:
     void evaluate(LevelTessellation const &tessellation, REAL const controlPoints[],
                   PointDescriptor const &pointDesc, REAL *const results[3],
                   PointDescriptor const &resultDesc) const;
-    void evaluateInside(LevelTessellation const &tessellation,
-                        internal::PatchEvaluator<REAL> &evaluator, REAL const controlPoints[],
-                        PointDescriptor const &pointDesc, REAL *const results[3],
-                        PointDescriptor const &resultDesc) const;
     void evaluateTree(LevelTessellation const &tessellation, REAL const controlPoints[],
                       PointDescriptor const &pointDesc, REAL *const results[3],
                       PointDescriptor const &resultDesc) const;

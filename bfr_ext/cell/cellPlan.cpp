@@ -11,6 +11,7 @@ namespace {
 // Matrices with more rows than this makes leave the cache, and those with fewer are taken too often.
 constexpr int kNumStepsOfHalves = 4;
 constexpr int kNumStepsOfWholes = 3;
+constexpr int kNumStepsOfFaces = 5; // in lattices
 
 Pair getMiddle(Pair const &p, Pair const &q) { return {(p[0] + q[0]) / 2, (p[1] + q[1]) / 2}; }
 
@@ -42,6 +43,10 @@ LeafPlaces::LeafPlaces(int faceSize, int numSteps) : _faceSize(faceSize), _numSt
             add({sector, {1, 0}});
         }
         refineWhole(1, numSteps);
+        // Those on the sides last: tessellations have them apart, or first.
+        std::stable_partition(_places.begin(), _places.end(), [](Place const &place) {
+            return place.coords[0] + place.coords[1] != 1;
+        });
     } else {
         for (Pair const &corner : HalfCell::kCorners) {
             add({0, corner});
@@ -129,9 +134,13 @@ void LeafPlaces::refineHalf(int sector, std::array<Pair, 4> const &corners, int 
     }
 }
 
-CellPlan::CellPlan(int faceSize, int level, std::vector<LeafPlaces::Place> const &places, Use use)
+CellPlan::CellPlan(int faceSize, int level, std::vector<LeafPlaces::Place> const &places, Use use,
+                   bool isInLattice)
     : _faceSize(faceSize) {
     _nodes.push_back({0, true, 0, level, {}, nullptr, {}, {}, {{1, 0}, {0, 1}}, {}});
+    if (isInLattice && level <= kNumStepsOfFaces) {
+        setLeaf(_nodes[0]);
+    }
     for (std::size_t i = 0; i < places.size(); ++i) {
         LeafPlaces::Place place = places[i];
         if (use == Use::Points && place.coords[0] + place.coords[1] == 1) {
@@ -220,16 +229,20 @@ std::size_t CellPlan::findChild(std::size_t node, CellStep const &step, Pair con
         child.toCoords[1] = {0, scale};
     }
     if (child.numSteps <= (child.isWhole ? kNumStepsOfWholes : kNumStepsOfHalves)) {
-        int const size = child.isWhole ? _faceSize : 0;
-        std::unique_ptr<LeafPlaces const> &leafPlaces = _leafPlaces[{size, child.numSteps}];
-        if (!leafPlaces) {
-            leafPlaces = std::make_unique<LeafPlaces>(size, child.numSteps);
-        }
-        child.leaf = leafPlaces.get();
+        setLeaf(child);
     }
     _nodes[node].children.push_back(_nodes.size());
     _nodes.push_back(std::move(child));
     return _nodes.size() - 1;
+}
+
+void CellPlan::setLeaf(Node &node) {
+    int const size = node.isWhole ? _faceSize : 0;
+    std::unique_ptr<LeafPlaces const> &leafPlaces = _leafPlaces[{size, node.numSteps}];
+    if (!leafPlaces) {
+        leafPlaces = std::make_unique<LeafPlaces>(size, node.numSteps);
+    }
+    node.leaf = leafPlaces.get();
 }
 
 // Adds the edges whose places are all in half cells that are leaves.  Others are made apart: so is an edge with
@@ -264,24 +277,6 @@ void CellPlan::addEdges(std::vector<LeafPlaces::Place> const &places) {
             runs.insert(runs.end(), edges[edge].begin(), edges[edge].end());
         }
     }
-}
-
-// Nodes are many, and their arrays short: what the heap takes for blocks counts.
-std::size_t CellPlan::GetSize() const {
-    static constexpr std::size_t kLeastBlock = 4 * sizeof(void *);
-    auto const getBytes = [](auto const &array) {
-        std::size_t const size = array.capacity() * sizeof(array[0]);
-        return size == 0 ? 0 : std::max(size + 2 * sizeof(void *), kLeastBlock);
-    };
-    std::size_t size = getBytes(_nodes);
-    for (Node const &node : _nodes) {
-        size += getBytes(node.children) + getBytes(node.runs) + getBytes(node.runsWithEdge) +
-                getBytes(node.corners);
-    }
-    for (auto const &leafPlaces : _leafPlaces) {
-        size += leafPlaces.second->GetMemory();
-    }
-    return size;
 }
 
 } // namespace OpenSubdivHex::BfrExt::internal

@@ -27,12 +27,6 @@ public:
 
     int GetNumSteps() const { return _numSteps; }
     std::size_t GetSize() const { return _places.size(); }
-    /// In bytes.
-    std::size_t GetMemory() const {
-        constexpr std::size_t kBytesOfLinks = 6 * sizeof(void *); // of a node of the map
-        return sizeof(LeafPlaces) + _places.capacity() * sizeof(Place) +
-               _rows.size() * (sizeof(Key) + sizeof(std::size_t) + kBytesOfLinks);
-    }
     Place const &operator[](std::size_t row) const { return _places[row]; }
     std::size_t Find(Place const &place) const { return _rows.at(getKey(place)); }
     bool Has(Place const &place) const { return _rows.count(getKey(place)) > 0; }
@@ -61,7 +55,8 @@ private:
 ///
 /// A place that several leaves have belongs to that which CellStencil follows it to, so that it is made
 /// once.  Derivatives are those of the first cell that has the place as a corner, as far as that makes a
-/// difference.  No base face is a leaf: there are many types of these, and few of the cells in them.
+/// difference.  Base faces in lattices are leaves themselves as long as their places are few; others are not: there are
+/// many types of these, and few of the cells in them.
 class CellPlan {
 public:
     /// A place that is a corner of a cell.
@@ -77,7 +72,7 @@ public:
         int depth;
         int numSteps; ///< that are left
         std::vector<std::size_t> children;
-        /// Of leaves, with the rows that are of places, ascending.
+        /// Of leaves, with the rows that are of places, ascending; a base face may have none.
         LeafPlaces const *leaf;
         std::vector<PlaceRun> runs;
         /// In a plan for points, of a half cell that has all places that the tessellation has inside of an edge
@@ -92,18 +87,19 @@ public:
     /// What is to be evaluated.
     enum class Use { Points, Derivatives };
 
-    /// \param level   that of the places, at most
-    /// \param places  of points, those on the border of the face are made apart, but for runsWithEdge
-    CellPlan(int faceSize, int level, std::vector<LeafPlaces::Place> const &places, Use use);
+    /// \param level        that of the places, at most
+    /// \param places       of points, those on the border of the face are made apart, but for runsWithEdge
+    /// \param isInLattice  whether many faces are of the type of the base face
+    CellPlan(int faceSize, int level, std::vector<LeafPlaces::Place> const &places, Use use,
+             bool isInLattice);
 
     /// Node 0 is the face.
     Node const &operator[](std::size_t node) const { return _nodes[node]; }
-    /// Memory, in bytes.
-    std::size_t GetSize() const;
 
 private:
     bool addCorner(std::size_t node, LeafPlaces::Place const &place, Pair const (&toCoords)[2],
                    int number);
+    void setLeaf(Node &node);
     std::size_t findChild(std::size_t node, CellStep const &step, Pair const (&toCoords)[2]);
     void addEdges(std::vector<LeafPlaces::Place> const &places);
 

@@ -53,7 +53,7 @@ private:
     void descendToChildren(CellType const &type, CellPlan const &plan, std::size_t node,
                            std::size_t depth);
     void evaluateLeaf(CellType const &type, RingCell const *ringCell, CellPlan::Node const &leaf,
-                      REAL const *points, int const *indices);
+                      REAL const *points, std::ptrdiff_t stride, int const *indices);
     void evaluateCorners(CellType const &type, CellPlan::Node const &cell, REAL const *points);
     void evaluateCorners(FaceRings const &face, CellPlan::Node const &cell, REAL const *points);
     void evaluateCorners(RingCell const &child, CellPlan::Node const &cell, REAL const *points);
@@ -65,7 +65,6 @@ private:
     std::size_t _paddedSize = 0;
     std::deque<std::vector<REAL>> _points; // by depth, of a cell and of its children
     std::vector<int> _indices;
-    std::vector<REAL> _sums;     // of points of a leaf that weigh the same
     std::vector<REAL> _along;    // derivatives at a corner, by two coordinates
     int const *_turns = nullptr; // of the plain face
     std::vector<bool> _hasEdge;

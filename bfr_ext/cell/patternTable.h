@@ -15,8 +15,6 @@ namespace OpenSubdivHex::BfrExt::internal {
 
 /// What a PatternTable of a type of cells has: one kind for each precision of a PatternOf.
 enum class PatternOf {
-    Face,
-    FaceDerivatives,
     Border,
     BorderPlace,
     BorderRate,

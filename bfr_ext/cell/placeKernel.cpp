@@ -38,14 +38,6 @@ void SumUpPlaces(PlaceMatrix<double> const &matrix, PlaceSums<double> const &sum
     sumUpWidest(matrix, sums);
 }
 
-void SumUpPlaces(MirrorMatrix<float> const &matrix, PlaceSums<float> const &sums) {
-    sumUpWidest(matrix, sums);
-}
-
-void SumUpPlaces(MirrorMatrix<double> const &matrix, PlaceSums<double> const &sums) {
-    sumUpWidest(matrix, sums);
-}
-
 void SumUpPlaces(std::array<PlaceMatrix<float>, 2> const &matrices,
                  DerivativeSums<float> const &sums) {
     sumUpWidest(matrices, sums);

@@ -10,9 +10,6 @@
 
 namespace OpenSubdivHex::BfrExt::internal {
 
-template <typename REAL>
-class MirrorMatrix;
-
 /// Memory that begins where a register of any machine may: those that lie across two lines of the cache
 /// would be read in twice the time.
 template <typename T>
@@ -143,10 +140,6 @@ struct ItemSums {
 void SumUpPlaces(PlaceMatrix<float> const &matrix, PlaceSums<float> const &sums);
 /// \copydoc SumUpPlaces(PlaceMatrix<float> const &, PlaceSums<float> const &)
 void SumUpPlaces(PlaceMatrix<double> const &matrix, PlaceSums<double> const &sums);
-/// The same of all places, without indices.
-void SumUpPlaces(MirrorMatrix<float> const &matrix, PlaceSums<float> const &sums);
-/// \copydoc SumUpPlaces(MirrorMatrix<float> const &, PlaceSums<float> const &)
-void SumUpPlaces(MirrorMatrix<double> const &matrix, PlaceSums<double> const &sums);
 
 /// Forms derivatives with matrices of the same places.
 void SumUpPlaces(std::array<PlaceMatrix<float>, 2> const &matrices,
@@ -164,8 +157,6 @@ void SumUpPlaces(PlaceMatrix<double> const &matrix, ItemSums<double> const &sums
 /// @{
 void SumUpPlacesPortable(PlaceMatrix<float> const &matrix, PlaceSums<float> const &sums);
 void SumUpPlacesPortable(PlaceMatrix<double> const &matrix, PlaceSums<double> const &sums);
-void SumUpPlacesPortable(MirrorMatrix<float> const &matrix, PlaceSums<float> const &sums);
-void SumUpPlacesPortable(MirrorMatrix<double> const &matrix, PlaceSums<double> const &sums);
 void SumUpPlacesPortable(std::array<PlaceMatrix<float>, 2> const &matrices,
                          DerivativeSums<float> const &sums);
 void SumUpPlacesPortable(std::array<PlaceMatrix<double>, 2> const &matrices,
@@ -174,8 +165,6 @@ void SumUpPlacesPortable(PlaceMatrix<float> const &matrix, ItemSums<float> const
 void SumUpPlacesPortable(PlaceMatrix<double> const &matrix, ItemSums<double> const &sums);
 void SumUpPlacesAvx2(PlaceMatrix<float> const &matrix, PlaceSums<float> const &sums);
 void SumUpPlacesAvx2(PlaceMatrix<double> const &matrix, PlaceSums<double> const &sums);
-void SumUpPlacesAvx2(MirrorMatrix<float> const &matrix, PlaceSums<float> const &sums);
-void SumUpPlacesAvx2(MirrorMatrix<double> const &matrix, PlaceSums<double> const &sums);
 void SumUpPlacesAvx2(std::array<PlaceMatrix<float>, 2> const &matrices,
                      DerivativeSums<float> const &sums);
 void SumUpPlacesAvx2(std::array<PlaceMatrix<double>, 2> const &matrices,
@@ -184,8 +173,6 @@ void SumUpPlacesAvx2(PlaceMatrix<float> const &matrix, ItemSums<float> const &su
 void SumUpPlacesAvx2(PlaceMatrix<double> const &matrix, ItemSums<double> const &sums);
 void SumUpPlacesAvx512(PlaceMatrix<float> const &matrix, PlaceSums<float> const &sums);
 void SumUpPlacesAvx512(PlaceMatrix<double> const &matrix, PlaceSums<double> const &sums);
-void SumUpPlacesAvx512(MirrorMatrix<float> const &matrix, PlaceSums<float> const &sums);
-void SumUpPlacesAvx512(MirrorMatrix<double> const &matrix, PlaceSums<double> const &sums);
 void SumUpPlacesAvx512(std::array<PlaceMatrix<float>, 2> const &matrices,
                        DerivativeSums<float> const &sums);
 void SumUpPlacesAvx512(std::array<PlaceMatrix<double>, 2> const &matrices,

@@ -11,14 +11,6 @@ void SumUpPlacesAvx512(PlaceMatrix<double> const &matrix, PlaceSums<double> cons
     sumUpPlaces<64>(matrix, sums);
 }
 
-void SumUpPlacesAvx512(MirrorMatrix<float> const &matrix, PlaceSums<float> const &sums) {
-    sumUpPlaces<64>(matrix, sums);
-}
-
-void SumUpPlacesAvx512(MirrorMatrix<double> const &matrix, PlaceSums<double> const &sums) {
-    sumUpPlaces<64>(matrix, sums);
-}
-
 void SumUpPlacesAvx512(std::array<PlaceMatrix<float>, 2> const &matrices,
                        DerivativeSums<float> const &sums) {
     sumUpPlaces<64>(matrices, sums);

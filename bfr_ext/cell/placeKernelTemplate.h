@@ -2,7 +2,7 @@
 #ifndef OPENSUBDIVHEX_BFR_EXT_CELL_PLACE_KERNEL_TEMPLATE_H
 #define OPENSUBDIVHEX_BFR_EXT_CELL_PLACE_KERNEL_TEMPLATE_H
 
-#include "mirrorMatrix.h"
+#include "placeKernel.h"
 
 #include <cstring>
 #include <type_traits>
@@ -317,18 +317,6 @@ void forComponents(std::size_t numComponents, FUNCTION const &function) {
     }
 }
 
-/// Four numbers in place of which come their sums with the signs that symmetries give: image i has sign -1
-/// in part k where i and k have an odd number of bits in common.
-template <typename NUMBER>
-void mirrorFour(NUMBER (&numbers)[4]) {
-    NUMBER const sums[2] = {numbers[0] + numbers[1], numbers[2] + numbers[3]};
-    NUMBER const differences[2] = {numbers[0] - numbers[1], numbers[2] - numbers[3]};
-    numbers[0] = sums[0] + sums[1];
-    numbers[1] = differences[0] + differences[1];
-    numbers[2] = sums[0] - sums[1];
-    numbers[3] = differences[0] - differences[1];
-}
-
 /// Places of a block of a matrix.
 struct PlaceBlock {
     std::size_t begin;
@@ -499,158 +487,6 @@ private:
     typename Tiles::Slots _slots[2];
 };
 
-/// The same of a mirrored matrix.
-template <std::size_t BYTES, typename REAL>
-class MirrorSums {
-public:
-    MirrorSums(MirrorMatrix<REAL> const &matrix, PlaceSums<REAL> const &sums)
-        : _matrix(matrix), _sums(sums) {}
-
-    void Form() {
-        forComponents(_sums.size, [&](auto number, std::size_t component) {
-            this->template formComponents<number()>(component);
-        });
-    }
-
-private:
-    using Tiles = TileSums<BYTES, REAL>;
-    using Lanes = typename Tiles::Lanes;
-    static constexpr std::size_t kMaxWidth = PlaceMatrix<REAL>::kMaxWidth;
-
-    template <std::size_t NUM_COMPONENTS>
-    void formComponents(std::size_t component) {
-        formPoints<NUM_COMPONENTS>(_sums.points + component);
-        auto const &parts = _matrix.GetParts();
-        PlaceMatrix<REAL> const &slots = parts[0].matrix;
-        for (std::size_t begin = 0; begin < slots.GetNumPlaces(); begin += kMaxWidth) {
-            std::size_t const width = slots.GetWidth(begin);
-            for (std::size_t i = 0; i < parts.size(); ++i) {
-                Tiles::template Form<NUM_COMPONENTS, false>(parts[i].matrix, begin, width,
-                                                            _points + 3 * parts[i].firstColumn, 3,
-                                                            nullptr, _numbers[i]);
-            }
-            if (parts.size() == 2) {
-                joinTwo<NUM_COMPONENTS>(width);
-            } else if (parts.size() == 4) {
-                joinFour<NUM_COMPONENTS>(width);
-            }
-            auto const &targets = _matrix.GetTargets(begin / kMaxWidth);
-            if (NUM_COMPONENTS == 3 && _sums.resultStride == 3) {
-                interleaveNumbers(width);
-                writePoints(targets);
-            } else {
-                writeNumbers<NUM_COMPONENTS>(targets, component);
-            }
-        }
-    }
-
-    using Targets = typename MirrorMatrix<REAL>::Targets;
-    using Target = typename MirrorMatrix<REAL>::Target;
-
-    /// Writes points of three numbers without gaps.  A fourth number is where the next point begins, which
-    /// is written afterwards.
-    void writePoints(Targets const &targets) {
-        REAL *const results = _sums.results;
-        for (Target const &target : targets.followed) {
-            std::memcpy(results + 3 * std::ptrdiff_t(target.place), _slots[target.slot],
-                        4 * sizeof(REAL));
-        }
-        for (Target const &target : targets.others) {
-            std::memcpy(results + 3 * std::ptrdiff_t(target.place), _slots[target.slot],
-                        3 * sizeof(REAL));
-        }
-    }
-
-    template <std::size_t NUM_COMPONENTS>
-    void writeNumbers(Targets const &targets, std::size_t component) {
-        REAL *const results = _sums.results + component;
-        for (auto const *some : {&targets.followed, &targets.others}) {
-            for (Target const &target : *some) {
-                auto const slot = std::size_t(target.slot);
-                REAL *const to = results + std::ptrdiff_t(target.place) * _sums.resultStride;
-                for (std::size_t k = 0; k < NUM_COMPONENTS; ++k) {
-                    to[k] = _numbers[slot / kMaxWidth][k][slot % kMaxWidth];
-                }
-            }
-        }
-    }
-
-    /// Copies the numbers of all images to the slots.
-    void interleaveNumbers(std::size_t width) {
-        for (std::size_t image = 0; image < _matrix.GetParts().size(); ++image) {
-            typename Tiles::Numbers const &numbers = _numbers[image];
-            for (std::size_t i = 0; i < width; i += Tiles::kSize) {
-                Tiles::StoreSlots(Tiles::Load(numbers[0] + i), Tiles::Load(numbers[1] + i),
-                                  Tiles::Load(numbers[2] + i), _slots[image * kMaxWidth + i]);
-            }
-        }
-    }
-
-    /// The sums of points that symmetries exchange.
-    template <std::size_t NUM_COMPONENTS>
-    void formPoints(REAL const *points) {
-        for (auto const &orbit : _matrix.GetOrbits()) {
-            auto const getPoint = [&](std::size_t i) {
-                return points + std::ptrdiff_t(orbit.points[i]) * _sums.stride;
-            };
-            auto const getSum = [&](std::size_t i) {
-                return _points + 3 * std::size_t(orbit.columns[i]);
-            };
-            for (std::size_t k = 0; k < NUM_COMPONENTS; ++k) {
-                if (orbit.size == 1) {
-                    getSum(0)[k] = getPoint(0)[k];
-                } else if (orbit.size == 2) {
-                    getSum(0)[k] = getPoint(0)[k] + getPoint(1)[k];
-                    getSum(1)[k] = getPoint(0)[k] - getPoint(1)[k];
-                } else {
-                    REAL numbers[4] = {getPoint(0)[k], getPoint(1)[k], getPoint(2)[k],
-                                       getPoint(3)[k]};
-                    mirrorFour(numbers);
-                    for (std::size_t i = 0; i < 4; ++i) {
-                        getSum(i)[k] = numbers[i];
-                    }
-                }
-            }
-        }
-    }
-
-    /// Of the parts, by parity, the images.
-    template <std::size_t NUM_COMPONENTS>
-    void joinTwo(std::size_t width) {
-        for (std::size_t k = 0; k < NUM_COMPONENTS; ++k) {
-            REAL *const even = _numbers[0][k];
-            REAL *const odd = _numbers[1][k];
-            for (std::size_t i = 0; i < width; i += Tiles::kSize) {
-                Lanes const ofEven = Tiles::Load(even + i);
-                Lanes const ofOdd = Tiles::Load(odd + i);
-                Tiles::Store(ofEven + ofOdd, even + i);
-                Tiles::Store(ofEven - ofOdd, odd + i);
-            }
-        }
-    }
-    template <std::size_t NUM_COMPONENTS>
-    void joinFour(std::size_t width) {
-        for (std::size_t k = 0; k < NUM_COMPONENTS; ++k) {
-            for (std::size_t i = 0; i < width; i += Tiles::kSize) {
-                Lanes ofParts[4] = {
-                    Tiles::Load(_numbers[0][k] + i), Tiles::Load(_numbers[1][k] + i),
-                    Tiles::Load(_numbers[2][k] + i), Tiles::Load(_numbers[3][k] + i)};
-                mirrorFour(ofParts);
-                for (std::size_t image = 0; image < 4; ++image) {
-                    Tiles::Store(ofParts[image], _numbers[image][k] + i);
-                }
-            }
-        }
-    }
-
-    MirrorMatrix<REAL> const &_matrix;
-    PlaceSums<REAL> const &_sums;
-    REAL _points[3 * MirrorMatrix<REAL>::kMaxPoints]; // by column
-    // Of a block, by image: of all places a component, or of each place all components.
-    typename Tiles::Numbers _numbers[MirrorMatrix<REAL>::kMaxImages];
-    REAL _slots[MirrorMatrix<REAL>::kMaxImages * kMaxWidth][4];
-};
-
 /// The same of several items, some at a time, so that their sums keep the machine busy.
 template <std::size_t BYTES, typename REAL>
 class BlockItemSums {
@@ -746,10 +582,6 @@ template <std::size_t BYTES, typename REAL>
 void sumUpPlaces(std::array<PlaceMatrix<REAL>, 2> const &matrices,
                  DerivativeSums<REAL> const &sums) {
     DerivativeBlockSums<BYTES, REAL>(matrices, sums).Form();
-}
-template <std::size_t BYTES, typename REAL>
-void sumUpPlaces(MirrorMatrix<REAL> const &matrix, PlaceSums<REAL> const &sums) {
-    MirrorSums<BYTES, REAL>(matrix, sums).Form();
 }
 
 } // namespace
