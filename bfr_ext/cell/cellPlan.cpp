@@ -42,7 +42,7 @@ LeafPlaces::LeafPlaces(int faceSize, int numSteps) : _faceSize(faceSize), _numSt
         for (int sector = 0; sector < faceSize; ++sector) {
             add({sector, {1, 0}});
         }
-        refineWhole(1, numSteps);
+        refine({-1, {{{1, 0}}}}, numSteps);
         // Those on the sides last: tessellations have them apart, or first.
         std::stable_partition(_places.begin(), _places.end(), [](Place const &place) {
             return place.coords[0] + place.coords[1] != 1;
@@ -51,12 +51,10 @@ LeafPlaces::LeafPlaces(int faceSize, int numSteps) : _faceSize(faceSize), _numSt
         for (Pair const &corner : HalfCell::kCorners) {
             add({0, corner});
         }
-        refineHalf(0,
-                   {HalfCell::kCorners[0], HalfCell::kCorners[1], HalfCell::kCorners[2],
-                    HalfCell::kCorners[3]},
-                   numSteps);
-    }
-    if (faceSize == 0) {
+        refine({0,
+                {HalfCell::kCorners[0], HalfCell::kCorners[1], HalfCell::kCorners[2],
+                 HalfCell::kCorners[3]}},
+               numSteps);
         std::stable_sort(_places.begin(), _places.end(), [&](Place const &a, Place const &b) {
             Group const group = findGroup(a.coords);
             Group const other = findGroup(b.coords);
@@ -105,32 +103,36 @@ void LeafPlaces::add(Place const &place) {
     }
 }
 
-void LeafPlaces::refineWhole(double scale, int numSteps) {
-    for (; numSteps > 0; --numSteps, scale /= 2) {
-        for (int sector = 0; sector < _faceSize; ++sector) {
-            add({sector, {scale / 2, 0}});
+// Level by level, since tessellations have places in that order.
+void LeafPlaces::refine(Cell const &root, int numSteps) {
+    std::vector<Cell> cells = {root};
+    for (; numSteps > 0; --numSteps) {
+        std::vector<Cell> children;
+        for (Cell const &cell : cells) {
+            if (cell.sector < 0) {
+                double const scale = cell.corners[0][0];
+                children.push_back({-1, {{{scale / 2, 0}}}});
+                for (int sector = 0; sector < _faceSize; ++sector) {
+                    add({sector, {scale / 2, 0}});
+                    children.push_back(
+                        {sector, {{{scale, 0}, {0, scale}, {0, scale / 2}, {scale / 2, 0}}}});
+                }
+                continue;
+            }
+            Pair const middle = getMiddle(cell.corners[0], cell.corners[1]);
+            std::array<Pair, 4> inner;
+            for (std::size_t i = 0; i < 4; ++i) {
+                inner[i] = getMiddle(cell.corners[i], middle);
+                add({cell.sector, inner[i]});
+            }
+            children.push_back({cell.sector, inner});
+            for (std::size_t i = 1; i < 4; ++i) {
+                std::size_t const next = (i + 1) % 4;
+                children.push_back(
+                    {cell.sector, {{cell.corners[i], cell.corners[next], inner[next], inner[i]}}});
+            }
         }
-        for (int sector = 0; sector < _faceSize; ++sector) {
-            refineHalf(sector, {{{scale, 0}, {0, scale}, {0, scale / 2}, {scale / 2, 0}}},
-                       numSteps - 1);
-        }
-    }
-}
-
-void LeafPlaces::refineHalf(int sector, std::array<Pair, 4> const &corners, int numSteps) {
-    if (numSteps == 0) {
-        return;
-    }
-    Pair const middle = getMiddle(corners[0], corners[1]);
-    std::array<Pair, 4> inner;
-    for (std::size_t i = 0; i < 4; ++i) {
-        inner[i] = getMiddle(corners[i], middle);
-        add({sector, inner[i]});
-    }
-    refineHalf(sector, inner, numSteps - 1);
-    for (std::size_t i = 1; i < 4; ++i) {
-        std::size_t const next = (i + 1) % 4;
-        refineHalf(sector, {{corners[i], corners[next], inner[next], inner[i]}}, numSteps - 1);
+        cells.swap(children);
     }
 }
 

@@ -37,11 +37,15 @@ private:
     // The groups of places that half cells have, in their order.
     enum Group { kInside, kLastSide, kFirstCorner, kFirstSide, kSecondSide, kThirdSide, kCorners };
 
+    struct Cell {
+        int sector;                  // -1: of a whole cell
+        std::array<Pair, 4> corners; // the first one alone of a whole cell
+    };
+
     Key getKey(Place const &place) const;
     static Group findGroup(Pair const &coords);
     void add(Place const &place);
-    void refineWhole(double scale, int numSteps);
-    void refineHalf(int sector, std::array<Pair, 4> const &corners, int numSteps);
+    void refine(Cell const &root, int numSteps);
 
     int const _faceSize;
     int const _numSteps;
