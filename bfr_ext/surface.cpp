@@ -291,7 +291,7 @@ void Surface<REAL>::evaluate(LevelTessellation const &tessellation, REAL const c
     useBorder(controlPoints, pointDesc, [&](internal::BorderEvaluator<REAL> &border) {
         if (plain) {
             internal::RingValues<REAL> &values = border.GetRingValues();
-            evaluator.Evaluate(*plain, getTurns(), values, plan, results[0], resultDesc.stride);
+            evaluator.Evaluate(*plain, values, plan, results[0], resultDesc.stride);
             if (ofDerivatives) {
                 evaluator.EvaluateDerivatives(*plain, values, *ofDerivatives, results[1],
                                               results[2], resultDesc.stride);
@@ -300,8 +300,7 @@ void Surface<REAL>::evaluate(LevelTessellation const &tessellation, REAL const c
         bool const isDone = !plain && !tessellation._section && _type->IsInLattice() &&
                             evaluateLatticeBorder(tessellation, border, results[0], resultDesc);
         if (!isDone) {
-            evaluateBorder(tessellation, border, plain ? &evaluator : nullptr, results[0],
-                           resultDesc);
+            evaluateBorder(tessellation, border, results[0], resultDesc);
         }
     });
 }
@@ -389,15 +388,14 @@ void Surface<REAL>::evaluateTree(LevelTessellation const &tessellation, REAL con
         }
     }
     useBorder(controlPoints, pointDesc, [&](internal::BorderEvaluator<REAL> &border) {
-        evaluateBorder(tessellation, border, nullptr, results[0], resultDesc);
+        evaluateBorder(tessellation, border, results[0], resultDesc);
     });
 }
 
-// Makes the points on the border, but for those inside of edges that were made with those inside of the face.
+// Makes the points on the border.
 template <typename REAL>
 void Surface<REAL>::evaluateBorder(LevelTessellation const &tessellation,
-                                   internal::BorderEvaluator<REAL> &evaluator,
-                                   internal::PatchEvaluator<REAL> const *inside, REAL p[],
+                                   internal::BorderEvaluator<REAL> &evaluator, REAL p[],
                                    PointDescriptor const &resultDesc) const {
     if (tessellation._section) {
         evaluateSectionBorder(tessellation, evaluator, p, resultDesc);
@@ -407,9 +405,6 @@ void Surface<REAL>::evaluateBorder(LevelTessellation const &tessellation,
     for (std::size_t edge = 0; edge < std::size_t(GetFaceSize()); ++edge) {
         int const first = tessellation._firstEdgeCoords[edge];
         evaluator.EvaluateVertex(edge, getResult(first));
-        if (inside && inside->HasEdge(edge)) {
-            continue;
-        }
         int const numPlaces = tessellation.GetNumEdgeCoords(int(edge));
         int const level = tessellation.getEdgeLevel(edge);
         if (level < 0) {

@@ -306,8 +306,7 @@ private:
     void useBorder(REAL const controlPoints[], PointDescriptor const &pointDesc,
                    FUNCTION const &function) const;
     void evaluateBorder(LevelTessellation const &tessellation,
-                        internal::BorderEvaluator<REAL> &evaluator,
-                        internal::PatchEvaluator<REAL> const *inside, REAL p[],
+                        internal::BorderEvaluator<REAL> &evaluator, REAL p[],
                         PointDescriptor const &resultDesc) const;
     bool evaluateLatticeBorder(LevelTessellation const &tessellation,
                                internal::BorderEvaluator<REAL> &evaluator, REAL p[],

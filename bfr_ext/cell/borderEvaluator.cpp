@@ -112,7 +112,7 @@ void BorderEvaluator<REAL>::setEdge(std::size_t edge) {
         return;
     }
     _edgeNumber = edge;
-    _isReversed = IsReversed(edge);
+    _isReversed = _turns[edge] == 1;
     if (_plain) {
         FaceRings const &face = _plain->GetRings();
         if (RingCell const *const cell = face.GetLongEdge(int(edge), _isReversed)) {

@@ -28,9 +28,6 @@ public:
     /// Of the rings of a plain face.
     RingValues<REAL> &GetRingValues() { return _values; }
 
-    /// Whether an edge runs against the face.
-    bool IsReversed(std::size_t edge) const { return _turns[edge] == 1; }
-
     /// Writes the point of a vertex.
     void EvaluateVertex(std::size_t vert, REAL *result);
 

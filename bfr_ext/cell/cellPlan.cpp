@@ -139,7 +139,7 @@ void LeafPlaces::refine(Cell const &root, int numSteps) {
 CellPlan::CellPlan(int faceSize, int level, std::vector<LeafPlaces::Place> const &places, Use use,
                    bool isInLattice)
     : _faceSize(faceSize) {
-    _nodes.push_back({0, true, 0, level, {}, nullptr, {}, {}, {{1, 0}, {0, 1}}, {}});
+    _nodes.push_back({0, true, 0, level, {}, nullptr, {}, {{1, 0}, {0, 1}}, {}});
     if (isInLattice && level <= kNumStepsOfFaces) {
         setLeaf(_nodes[0]);
     }
@@ -175,12 +175,8 @@ CellPlan::CellPlan(int faceSize, int level, std::vector<LeafPlaces::Place> const
         }
         leaf.runs.push_back({int(leaf.leaf->Find(place)), int(i), 1});
     }
-    if (use == Use::Points) {
-        addEdges(places);
-    }
     for (Node &node : _nodes) {
         joinRuns(node.runs);
-        joinRuns(node.runsWithEdge);
         node.corners.shrink_to_fit();
     }
     _nodes.shrink_to_fit();
@@ -222,7 +218,6 @@ std::size_t CellPlan::findChild(std::size_t node, CellStep const &step, Pair con
                   {},
                   nullptr,
                   {},
-                  {},
                   {toCoords[0], toCoords[1]},
                   {}};
     if (child.isWhole) {
@@ -245,40 +240,6 @@ void CellPlan::setLeaf(Node &node) {
         leafPlaces = std::make_unique<LeafPlaces>(size, node.numSteps);
     }
     node.leaf = leafPlaces.get();
-}
-
-// Adds the edges whose places are all in half cells that are leaves.  Others are made apart: so is an edge with
-// finer places.
-void CellPlan::addEdges(std::vector<LeafPlaces::Place> const &places) {
-    std::vector<std::vector<PlaceRun>> edges(static_cast<std::size_t>(_faceSize));
-    std::vector<Node *> leaves(edges.size());
-    for (std::size_t const child : _nodes[0].children) {
-        Node &node = _nodes[child];
-        if (node.leaf && !node.isWhole) {
-            leaves[node.child - 1] = &node;
-        }
-    }
-    for (std::size_t i = 0; i < places.size(); ++i) {
-        Pair const &coords = places[i].coords;
-        auto const edge = std::size_t(places[i].sector);
-        bool const isInEdge = coords[0] + coords[1] == 1 && coords[0] != 0 && coords[1] != 0;
-        if (!isInEdge || !leaves[edge]) {
-            continue;
-        }
-        LeafPlaces::Place const place = {0, HalfCell::kFromSector.Apply(coords)};
-        if (leaves[edge]->leaf->Has(place)) {
-            edges[edge].push_back({int(leaves[edge]->leaf->Find(place)), int(i), 1});
-        } else {
-            leaves[edge] = nullptr;
-        }
-    }
-    for (std::size_t edge = 0; edge < edges.size(); ++edge) {
-        if (leaves[edge] && !edges[edge].empty()) {
-            std::vector<PlaceRun> &runs = leaves[edge]->runsWithEdge;
-            runs = leaves[edge]->runs;
-            runs.insert(runs.end(), edges[edge].begin(), edges[edge].end());
-        }
-    }
 }
 
 } // namespace OpenSubdivHex::BfrExt::internal

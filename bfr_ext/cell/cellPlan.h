@@ -29,7 +29,6 @@ public:
     std::size_t GetSize() const { return _places.size(); }
     Place const &operator[](std::size_t row) const { return _places[row]; }
     std::size_t Find(Place const &place) const { return _rows.at(getKey(place)); }
-    bool Has(Place const &place) const { return _rows.count(getKey(place)) > 0; }
 
 private:
     using Key = std::tuple<int, double, double>;
@@ -79,9 +78,6 @@ public:
         /// Of leaves, with the rows that are of places, ascending; a base face may have none.
         LeafPlaces const *leaf;
         std::vector<PlaceRun> runs;
-        /// In a plan for points, of a half cell that has all places that the tessellation has inside of an edge
-        /// of the face: the same with these.
-        std::vector<PlaceRun> runsWithEdge;
         /// Of a plan for derivatives: of u and v, the derivatives by them of what those of the leaf are
         /// by, which are the coordinates in a half cell or its own u and v in a whole one; and the
         /// corners of cells that are no leaves.
@@ -92,7 +88,7 @@ public:
     enum class Use { Points, Derivatives };
 
     /// \param level        that of the places, at most
-    /// \param places       of points, those on the border of the face are made apart, but for runsWithEdge
+    /// \param places       of points, those on the border of the face are made apart
     /// \param isInLattice  whether many faces are of the type of the base face
     CellPlan(int faceSize, int level, std::vector<LeafPlaces::Place> const &places, Use use,
              bool isInLattice);
@@ -105,7 +101,6 @@ private:
                    int number);
     void setLeaf(Node &node);
     std::size_t findChild(std::size_t node, CellStep const &step, Pair const (&toCoords)[2]);
-    void addEdges(std::vector<LeafPlaces::Place> const &places);
 
     int const _faceSize;
     std::vector<Node> _nodes;

@@ -15,25 +15,6 @@ struct Leaf {
     CellType const &type;
     RingCell const *ringCell;
     LeafPlaces const &places;
-    // Of a half cell with what is inside of its long edge; null: without.
-    HalfWithEdge const *withEdge = nullptr;
-    bool isReversed = false; // the long edge
-
-    // Whether it is the long edge that has a place.
-    bool IsInEdge(LeafPlaces::Place const &place) const {
-        return withEdge && place.coords[1] == 0 && place.coords[0] != 0 && place.coords[0] != 1;
-    }
-    // Its weights of the place, by column of both.  What they make is, to the bit, what BorderEvaluator makes: zeros
-    // change no sum of numbers that are finite.
-    std::vector<double> FindInEdge(LeafPlaces::Place const &place) const {
-        RingCell const &longEdge = *withEdge->longEdge;
-        BorderStencil stencil;
-        stencil.Find(longEdge.GetType(), isReversed ? 1 - place.coords[0] : place.coords[0],
-                     longEdge.IsInner() ? StencilOf::Step : StencilOf::Points);
-        std::vector<double> ordered;
-        longEdge.GetPlaces().Order(stencil.GetWeights(), ordered);
-        return withEdge->places.Spread(longEdge.GetPlaces(), ordered);
-    }
 
     // What is a sum of the points of the type, as one of those of the rings.
     std::vector<double> const &Order(std::vector<double> const &weights,
@@ -42,9 +23,6 @@ struct Leaf {
             return weights;
         }
         ringCell->GetPlaces().Order(weights, scratch);
-        if (withEdge) {
-            scratch = withEdge->places.Spread(ringCell->GetPlaces(), scratch);
-        }
         return scratch;
     }
 
@@ -52,9 +30,6 @@ struct Leaf {
         return ringCell && ringCell->IsInner() ? StencilOf::Step : StencilOf::Points;
     }
     std::size_t GetNumPoints() const {
-        if (withEdge) {
-            return withEdge->places.GetColumns().size();
-        }
         return ringCell ? ringCell->GetColumns().size() : std::size_t(type.GetNumPoints());
     }
 };
@@ -73,10 +48,6 @@ LeafMatrices<REAL, COUNT> makeMatrices(Leaf const &leaf, FIND const &find, GET c
     Rows rows(leaf.places.GetSize() * COUNT);
     std::vector<double> scratch;
     for (std::size_t row = 0; row < leaf.places.GetSize(); ++row) {
-        if (leaf.IsInEdge(leaf.places[row])) {
-            rows[row * COUNT] = leaf.FindInEdge(leaf.places[row]);
-            continue;
-        }
         find(stencil, leaf.places[row]);
         for (std::size_t i = 0; i < COUNT; ++i) {
             rows[row * COUNT + i] = leaf.Order(getRow(stencil, i), scratch);
@@ -235,11 +206,9 @@ void PatchEvaluator<REAL>::descendToChildren(CellType const &type, CellPlan cons
 }
 
 template <typename REAL>
-void PatchEvaluator<REAL>::Evaluate(PlainFaceType const &type, int const *turns,
-                                    RingValues<REAL> const &values, CellPlan const &plan,
-                                    REAL *results, std::ptrdiff_t resultStride) {
-    _turns = turns;
-    _hasEdge.assign(type.GetRings().GetRings().GetRings().size(), false);
+void PatchEvaluator<REAL>::Evaluate(PlainFaceType const &type, RingValues<REAL> const &values,
+                                    CellPlan const &plan, REAL *results,
+                                    std::ptrdiff_t resultStride) {
     _results = results;
     _resultStride = resultStride;
     evaluate(type, values, plan);
@@ -265,9 +234,6 @@ void PatchEvaluator<REAL>::evaluate(PlainFaceType const &type, RingValues<REAL> 
     evaluateCorners(face, plan[0], values.GetPoints());
     for (std::size_t const next : plan[0].children) {
         CellPlan::Node const &child = plan[next];
-        if (evaluateHalf(face, child, values.GetPoints())) {
-            continue;
-        }
         RingCell const &cell = face.GetChild(child.child);
         std::vector<int> const &columns = cell.GetColumns();
         _indices.resize(columns.size());
@@ -291,33 +257,6 @@ void PatchEvaluator<REAL>::evaluate(PlainFaceType const &type, RingValues<REAL> 
             descend(cell.GetType(), plan, next, 1);
         }
     }
-}
-
-// Evaluates a leaf that is a half cell beside an edge, with the points inside of the edge, if the leaf has all of them;
-// false if it is something else.  One matrix for both takes less time than two (benchmark surfaces, irregular and spot,
-// 1.05 to 1.1 times as fast).
-template <typename REAL>
-bool PatchEvaluator<REAL>::evaluateHalf(FaceRings const &face, CellPlan::Node const &leaf,
-                                        REAL const *points) {
-    if (!_results || !leaf.leaf || leaf.isWhole) {
-        return false;
-    }
-    int const edge = int(leaf.child) - 1;
-    bool const isReversed = _turns[edge] == 1;
-    HalfWithEdge const *const half = face.GetHalfWithEdge(edge, isReversed);
-    if (!half) {
-        return false;
-    }
-    bool const hasEdge = !leaf.runsWithEdge.empty();
-    std::vector<PlaceRun> const &runs = hasEdge ? leaf.runsWithEdge : leaf.runs;
-    _hasEdge[std::size_t(edge)] = hasEdge;
-    _indices.resize(half->places.GetColumns().size());
-    face.FindHalfIndices(edge, isReversed, _indices.data());
-    Leaf const ofLeaf = {half->half->GetType(), half->half.get(), *leaf.leaf, half, isReversed};
-    SumUpPlaces(getPointMatrices<REAL>(ofLeaf)[0],
-                {points, std::ptrdiff_t(_paddedSize), _size, _indices.data(), _results,
-                 _resultStride, runs.data(), runs.size()});
-    return true;
 }
 
 // The points are those of the type, or of the rings that it is told as a cell of.

@@ -19,7 +19,6 @@ enum class PatternOf {
     BorderPlace,
     BorderRate,
     Rates,
-    RatesWithEdge,
     RateDerivatives,
     RateDerivativesOnEdge,
     Leaf,

@@ -186,6 +186,12 @@ public:
         TileSums const tiles{matrix.GetNumPoints(), matrix.GetWidth(begin), points, stride,
                              indices};
         REAL const *const weights = matrix.GetBlock(begin);
+        if (tiles.width == PlaceMatrix<REAL>::kLanes) {
+            for (std::size_t first = 0; first < count; first += kSize) {
+                tiles.template formNarrow<NUM_COMPONENTS, HAS_INDICES>(weights, first, result);
+            }
+            return;
+        }
         forTiles<kMaxTile>(0, count, [&](auto numLanes, std::size_t first) {
             tiles.template form<numLanes(), NUM_COMPONENTS, HAS_INDICES>(weights, first, result);
         });
@@ -251,6 +257,38 @@ private:
         for (std::size_t lane = 0; lane < NUM_LANES; ++lane) {
             storeSums(sums[lane], first + lane * kSize, result);
         }
+    }
+
+    /// One register of places of a narrow block.
+    template <std::size_t NUM_COMPONENTS, bool HAS_INDICES, typename RESULT>
+    void formNarrow(REAL const *weights, std::size_t first, RESULT &result) const {
+        constexpr std::size_t kNumSums = PlaceSums<REAL>::kNumNarrowSums;
+        Lanes sums[kNumSums][NUM_COMPONENTS] = {};
+        weights += first;
+        auto const add = [&](std::size_t i, Lanes(&to)[NUM_COMPONENTS]) {
+            auto const place = std::ptrdiff_t(HAS_INDICES ? std::size_t(indices[i]) : i);
+            REAL const *const point = points + place * stride;
+            Lanes ofPoint = Load(weights + i * width);
+            keepInRegister(ofPoint);
+            for (std::size_t k = 0; k < NUM_COMPONENTS; ++k) {
+                AddProducts(to[k], ofPoint, point[k]);
+            }
+        };
+        std::size_t i = 0;
+        for (; i + kNumSums <= numPoints; i += kNumSums) {
+            for (std::size_t k = 0; k < kNumSums; ++k) {
+                add(i + k, sums[k]);
+            }
+        }
+        for (std::size_t k = 0; i + k < numPoints; ++k) {
+            add(i + k, sums[k]);
+        }
+        Lanes total[NUM_COMPONENTS];
+        static_assert(kNumSums == 4);
+        for (std::size_t k = 0; k < NUM_COMPONENTS; ++k) {
+            total[k] = (sums[0][k] + sums[1][k]) + (sums[2][k] + sums[3][k]);
+        }
+        storeSums(total, first, result);
     }
 
     template <std::size_t NUM_LANES, std::size_t NUM_COMPONENTS, bool HAS_INDICES, typename RESULT>

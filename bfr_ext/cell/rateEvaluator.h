@@ -80,8 +80,6 @@ private:
                                  bool hasDerivatives);
     static Matrices makeInside(Source const &source, std::vector<BfrPlace> const &places,
                                int faceSize, bool hasDerivatives);
-    Matrices makeHalf(Source const &source, HalfWithEdge const &half, bool isReversed, int rate,
-                      int first);
     template <typename FUNCTION>
     void forEachEdge(FUNCTION const &function) const;
     bool evaluateLatticeBorder() const;
@@ -91,8 +89,6 @@ private:
     int getFaceKey() const;
     void evaluateInside(Source const &source);
     void evaluateInside(Source const &source, PatternOf of);
-    void evaluateHalf(Source const &source, HalfWithEdge const &half, bool isReversed, int rate,
-                      int first);
     void evaluateDerivativesOnEdge(Source const &source, int edge, int rate, int first) const;
     void sumUp(Source const &source, Matrices const &matrices, bool areDerivatives,
                int firstPlace) const;
