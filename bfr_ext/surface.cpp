@@ -297,11 +297,7 @@ void Surface<REAL>::evaluate(LevelTessellation const &tessellation, REAL const c
                                               results[2], resultDesc.stride);
             }
         }
-        bool const isDone = !plain && !tessellation._section && _type->IsInLattice() &&
-                            evaluateLatticeBorder(tessellation, border, results[0], resultDesc);
-        if (!isDone) {
-            evaluateBorder(tessellation, border, results[0], resultDesc);
-        }
+        evaluateBorder(tessellation, border, results[0], resultDesc);
     });
 }
 
@@ -452,24 +448,6 @@ void Surface<REAL>::evaluateSectionBorder(LevelTessellation const &tessellation,
             std::copy_n(&edgePoints[std::size_t(run.index + i) * size], size, result);
         }
     }
-}
-
-// False where an edge has no level, or BorderEvaluator::EvaluateInLattice() is.
-template <typename REAL>
-bool Surface<REAL>::evaluateLatticeBorder(LevelTessellation const &tessellation,
-                                          internal::BorderEvaluator<REAL> &evaluator, REAL p[],
-                                          PointDescriptor const &resultDesc) const {
-    using Evaluator = internal::BorderEvaluator<REAL>;
-    typename Evaluator::LatticeEdge edges[Evaluator::kMaxLatticeFaceSize];
-    for (std::size_t edge = 0; edge < std::size_t(GetFaceSize()); ++edge) {
-        int const level = tessellation.getEdgeLevel(edge);
-        if (level < 0) {
-            return false;
-        }
-        edges[edge] = {level, tessellation.GetNumEdgeCoords(int(edge)),
-                       p + std::ptrdiff_t(tessellation._firstEdgeCoords[edge]) * resultDesc.stride};
-    }
-    return evaluator.EvaluateInLattice(edges, resultDesc.stride);
 }
 
 template <typename REAL>

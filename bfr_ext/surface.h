@@ -308,9 +308,6 @@ private:
     void evaluateBorder(LevelTessellation const &tessellation,
                         internal::BorderEvaluator<REAL> &evaluator, REAL p[],
                         PointDescriptor const &resultDesc) const;
-    bool evaluateLatticeBorder(LevelTessellation const &tessellation,
-                               internal::BorderEvaluator<REAL> &evaluator, REAL p[],
-                               PointDescriptor const &resultDesc) const;
     void evaluateSectionBorder(LevelTessellation const &tessellation,
                                internal::BorderEvaluator<REAL> &evaluator, REAL p[],
                                PointDescriptor const &resultDesc) const;

@@ -283,19 +283,33 @@ void PatchEvaluator<REAL>::evaluateLeaf(CellType const &type, RingCell const *ri
         [](CellStencil const &stencil, std::size_t i) -> std::vector<double> const & {
             return i == 0 ? stencil.GetDuWeights() : stencil.GetDvWeights();
         });
-    DerivativeSums<REAL> sums = {points,
-                                 stride,
-                                 _size,
-                                 indices,
-                                 {},
-                                 {_derivatives[0], _derivatives[1]},
-                                 _resultStride,
-                                 leaf.runs.data(),
-                                 leaf.runs.size()};
     for (std::size_t i = 0; i < 2; ++i) {
-        std::copy_n(leaf.toCoords[i].begin(), 2, sums.factors[i]);
+        SumUpPlaces(matrices[i], {points, stride, _size, indices, _derivatives[i], _resultStride,
+                                  leaf.runs.data(), leaf.runs.size()});
     }
-    SumUpPlaces(matrices, sums);
+    turnDerivatives(leaf);
+}
+
+// Those by the coordinates of a leaf become those by u and v.
+template <typename REAL>
+void PatchEvaluator<REAL>::turnDerivatives(CellPlan::Node const &leaf) const {
+    auto const &[first, second] = leaf.toCoords;
+    if (first == Pair{1, 0} && second == Pair{0, 1}) {
+        return;
+    }
+    REAL const factors[2][2] = {{REAL(first[0]), REAL(second[0])},
+                                {REAL(first[1]), REAL(second[1])}};
+    for (PlaceRun const &run : leaf.runs) {
+        std::ptrdiff_t place = std::ptrdiff_t(run.place) * _resultStride;
+        for (int i = 0; i < run.count; ++i, place += _resultStride) {
+            for (std::ptrdiff_t k = place; k < place + std::ptrdiff_t(_size); ++k) {
+                REAL const along = _derivatives[0][k];
+                REAL const across = _derivatives[1][k];
+                _derivatives[0][k] = factors[0][0] * along + factors[0][1] * across;
+                _derivatives[1][k] = factors[1][0] * along + factors[1][1] * across;
+            }
+        }
+    }
 }
 
 template <typename REAL>

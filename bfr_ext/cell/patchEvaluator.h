@@ -48,6 +48,7 @@ private:
                            std::size_t depth);
     void evaluateLeaf(CellType const &type, RingCell const *ringCell, CellPlan::Node const &leaf,
                       REAL const *points, std::ptrdiff_t stride, int const *indices);
+    void turnDerivatives(CellPlan::Node const &leaf) const;
     void evaluateCorners(CellType const &type, CellPlan::Node const &cell, REAL const *points);
     void evaluateCorners(FaceRings const &face, CellPlan::Node const &cell, REAL const *points);
     void evaluateCorners(RingCell const &child, CellPlan::Node const &cell, REAL const *points);

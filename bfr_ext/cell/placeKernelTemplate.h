@@ -197,23 +197,6 @@ public:
         });
     }
 
-    /// \brief The same of derivatives, of which two matrices make what DerivativeSums joins.
-    ///
-    /// \param results  Numbers or Slots, by u and by v
-    template <std::size_t NUM_COMPONENTS, bool HAS_INDICES, typename RESULT>
-    static void FormDerivatives(std::array<PlaceMatrix<REAL>, 2> const &matrices, std::size_t begin,
-                                std::size_t count, DerivativeSums<REAL> const &sums,
-                                std::size_t component, RESULT (&results)[2]) {
-        TileSums const tiles{matrices[0].GetNumPoints(), matrices[0].GetWidth(begin),
-                             sums.points + component, sums.stride, sums.indices};
-        REAL const *const weights[2] = {matrices[0].GetBlock(begin), matrices[1].GetBlock(begin)};
-        // The sums of two matrices are in registers.
-        forTiles<kMaxTile / 2>(0, count, [&](auto numLanes, std::size_t first) {
-            tiles.template formDerivatives<numLanes(), NUM_COMPONENTS, HAS_INDICES>(
-                weights, first, sums.factors, results);
-        });
-    }
-
     std::size_t numPoints;
     std::size_t width; // of the block
     REAL const *points;
@@ -240,7 +223,8 @@ private:
     /// NUM_LANES registers of places, from the first on, of each component.
     template <std::size_t NUM_LANES, std::size_t NUM_COMPONENTS, bool HAS_INDICES, typename RESULT>
     void form(REAL const *weights, std::size_t first, RESULT &result) const {
-        Lanes sums[NUM_LANES][NUM_COMPONENTS] = {};
+        Lanes sums[NUM_LANES][NUM_COMPONENTS];
+        setZero(sums);
         weights += first;
         for (std::size_t i = 0; i < numPoints; ++i) {
             auto const place = std::ptrdiff_t(HAS_INDICES ? std::size_t(indices[i]) : i);
@@ -263,7 +247,8 @@ private:
     template <std::size_t NUM_COMPONENTS, bool HAS_INDICES, typename RESULT>
     void formNarrow(REAL const *weights, std::size_t first, RESULT &result) const {
         constexpr std::size_t kNumSums = PlaceSums<REAL>::kNumNarrowSums;
-        Lanes sums[kNumSums][NUM_COMPONENTS] = {};
+        Lanes sums[kNumSums][NUM_COMPONENTS];
+        setZero(sums);
         weights += first;
         auto const add = [&](std::size_t i, Lanes(&to)[NUM_COMPONENTS]) {
             auto const place = std::ptrdiff_t(HAS_INDICES ? std::size_t(indices[i]) : i);
@@ -291,33 +276,11 @@ private:
         storeSums(total, first, result);
     }
 
-    template <std::size_t NUM_LANES, std::size_t NUM_COMPONENTS, bool HAS_INDICES, typename RESULT>
-    void formDerivatives(REAL const *const (&weights)[2], std::size_t first,
-                         REAL const (&factors)[2][2], RESULT (&results)[2]) const {
-        Lanes sums[NUM_LANES][2][NUM_COMPONENTS] = {};
-        std::size_t place = first;
-        for (std::size_t i = 0; i < numPoints; ++i, place += width) {
-            REAL const *const point =
-                points + std::ptrdiff_t(HAS_INDICES ? std::size_t(indices[i]) : i) * stride;
-            for (std::size_t lane = 0; lane < NUM_LANES; ++lane) {
-                for (std::size_t matrix = 0; matrix < 2; ++matrix) {
-                    Lanes ofLane = Load(weights[matrix] + place + lane * kSize);
-                    keepInRegister(ofLane);
-                    for (std::size_t k = 0; k < NUM_COMPONENTS; ++k) {
-                        AddProducts(sums[lane][matrix][k], ofLane, point[k]);
-                    }
-                }
-            }
-        }
-        for (std::size_t lane = 0; lane < NUM_LANES; ++lane) {
-            for (std::size_t i = 0; i < 2; ++i) {
-                Lanes derivatives[NUM_COMPONENTS];
-                for (std::size_t k = 0; k < NUM_COMPONENTS; ++k) {
-                    derivatives[k] =
-                        sums[lane][0][k] * factors[0][i] + sums[lane][1][k] * factors[1][i];
-                }
-                storeSums(derivatives, first + lane * kSize, results[i]);
-            }
+    /// GCC would keep an array in memory that is set to 0 as a whole.
+    template <std::size_t NUM, std::size_t NUM_COMPONENTS>
+    static void setZero(Lanes (&sums)[NUM][NUM_COMPONENTS]) {
+        for (auto &some : sums) {
+            std::fill(std::begin(some), std::end(some), Lanes{});
         }
     }
 
@@ -482,146 +445,10 @@ private:
     typename Tiles::Slots _slots;
 };
 
-/// The same of derivatives.
-template <std::size_t BYTES, typename REAL>
-class DerivativeBlockSums {
-public:
-    using Matrices = std::array<PlaceMatrix<REAL>, 2>;
-
-    DerivativeBlockSums(Matrices const &matrices, DerivativeSums<REAL> const &sums)
-        : _matrices(matrices), _sums(sums) {}
-
-    void Form() {
-        forBlockComponents(
-            _matrices[0], _sums,
-            [&](auto number, auto hasIndices, std::size_t component, PlaceBlock const &block) {
-                this->template formComponents<number(), hasIndices()>(component, block);
-            });
-    }
-
-private:
-    using Tiles = TileSums<BYTES, REAL>;
-
-    template <std::size_t NUM_COMPONENTS, bool HAS_INDICES>
-    void formComponents(std::size_t component, PlaceBlock const &block) {
-        auto const form = [&](auto &results) {
-            Tiles::template FormDerivatives<NUM_COMPONENTS, HAS_INDICES>(
-                _matrices, block.begin, block.count, _sums, component, results);
-            for (std::size_t i = 0; i < 2; ++i) {
-                writePlaces<NUM_COMPONENTS>(block, results[i], _sums.results[i] + component,
-                                            _sums.resultStride);
-            }
-        };
-        if constexpr (NUM_COMPONENTS == 3) {
-            form(_slots);
-        } else {
-            form(_numbers);
-        }
-    }
-
-    Matrices const &_matrices;
-    DerivativeSums<REAL> const &_sums;
-    typename Tiles::Numbers _numbers[2];
-    typename Tiles::Slots _slots[2];
-};
-
-/// The same of several items, some at a time, so that their sums keep the machine busy.
-template <std::size_t BYTES, typename REAL>
-class BlockItemSums {
-public:
-    BlockItemSums(PlaceMatrix<REAL> const &matrix, ItemSums<REAL> const &sums)
-        : _matrix(matrix), _sums(sums) {}
-
-    void Form() {
-        forComponents(_sums.size, [&](auto number, std::size_t component) {
-            this->template formComponents<number()>(component);
-        });
-    }
-
-private:
-    using Tiles = TileSums<BYTES, REAL>;
-    using Lanes = typename Tiles::Lanes;
-    static constexpr std::size_t kSize = Tiles::kSize;
-
-    template <std::size_t NUM_COMPONENTS>
-    void formComponents(std::size_t component) {
-        constexpr std::size_t kMaxItems = 4; // whose sums fit in 16 registers
-        std::size_t item = 0;
-        if (_sums.numItems % kMaxItems == 0) {
-            for (; item < _sums.numItems; item += kMaxItems) {
-                formItems<kMaxItems, NUM_COMPONENTS>(item, component);
-            }
-        }
-        for (; item + 3 <= _sums.numItems; item += 3) {
-            formItems<3, NUM_COMPONENTS>(item, component);
-        }
-        for (; item < _sums.numItems; ++item) {
-            formItems<1, NUM_COMPONENTS>(item, component);
-        }
-    }
-
-    template <std::size_t NUM_ITEMS, std::size_t NUM_COMPONENTS>
-    void formItems(std::size_t item, std::size_t component) const {
-        constexpr std::size_t kMaxWidth = PlaceMatrix<REAL>::kMaxWidth;
-        for (std::size_t first = 0; first < _matrix.GetNumPlaces(); first += kSize) {
-            std::size_t const begin = first / kMaxWidth * kMaxWidth;
-            formTile<NUM_ITEMS, NUM_COMPONENTS>(_sums.items + item, component, first,
-                                                _matrix.GetBlock(begin) + (first - begin),
-                                                _matrix.GetWidth(begin));
-        }
-    }
-
-    template <std::size_t NUM_ITEMS, std::size_t NUM_COMPONENTS>
-    void formTile(typename ItemSums<REAL>::Item const *items, std::size_t component,
-                  std::size_t first, REAL const *weights, std::size_t width) const {
-        Lanes sums[NUM_ITEMS][NUM_COMPONENTS] = {};
-        std::size_t const numPoints = _matrix.GetNumPoints();
-        for (std::size_t i = 0; i < numPoints; ++i, weights += width) {
-            Lanes const ofPoint = Tiles::Load(weights);
-            for (std::size_t item = 0; item < NUM_ITEMS; ++item) {
-                REAL const *const point =
-                    _sums.points + component + items[item].indices[i] * _sums.stride;
-                for (std::size_t k = 0; k < NUM_COMPONENTS; ++k) {
-                    Tiles::AddProducts(sums[item][k], ofPoint, point[k]);
-                }
-            }
-        }
-        REAL numbers[NUM_ITEMS][NUM_COMPONENTS][kSize];
-        for (std::size_t item = 0; item < NUM_ITEMS; ++item) {
-            for (std::size_t k = 0; k < NUM_COMPONENTS; ++k) {
-                Tiles::Store(sums[item][k], numbers[item][k]);
-            }
-        }
-        std::size_t const count = std::min(kSize, _matrix.GetNumPlaces() - first);
-        for (std::size_t item = 0; item < NUM_ITEMS; ++item) {
-            REAL *result =
-                items[item].results + component + std::ptrdiff_t(first) * items[item].resultStride;
-            for (std::size_t i = 0; i < count; ++i, result += items[item].resultStride) {
-                for (std::size_t k = 0; k < NUM_COMPONENTS; ++k) {
-                    result[k] = numbers[item][k][i];
-                }
-            }
-        }
-    }
-
-    PlaceMatrix<REAL> const &_matrix;
-    ItemSums<REAL> const &_sums;
-};
-
-template <std::size_t BYTES, typename REAL>
-void sumUpPlaces(PlaceMatrix<REAL> const &matrix, ItemSums<REAL> const &sums) {
-    BlockItemSums<BYTES, REAL>(matrix, sums).Form();
-}
 template <std::size_t BYTES, typename REAL>
 void sumUpPlaces(PlaceMatrix<REAL> const &matrix, PlaceSums<REAL> const &sums) {
     BlockSums<BYTES, REAL>(matrix, sums).Form();
 }
-template <std::size_t BYTES, typename REAL>
-void sumUpPlaces(std::array<PlaceMatrix<REAL>, 2> const &matrices,
-                 DerivativeSums<REAL> const &sums) {
-    DerivativeBlockSums<BYTES, REAL>(matrices, sums).Form();
-}
-
 } // namespace
 } // namespace OpenSubdivHex::BfrExt::internal
 

@@ -113,12 +113,9 @@ template <typename REAL>
 void RateEvaluator<REAL>::Evaluate(CellType const &type, REAL const *points,
                                    std::ptrdiff_t stride) {
     Source const source = {type, nullptr, 0, points, stride, nullptr};
-    bool const isBorderDone = type.IsInLattice() && evaluateLatticeBorder();
     forEachEdge([&](int edge, int rate, int first) {
-        if (!isBorderDone) {
-            evaluateVertex(edge, first);
-            evaluateEdge(edge, rate, first);
-        }
+        evaluateVertex(edge, first);
+        evaluateEdge(edge, rate, first);
         if (_results[1]) {
             evaluateDerivativesOnEdge(source, edge, rate, first);
         }
@@ -165,16 +162,6 @@ void RateEvaluator<REAL>::forEachEdge(FUNCTION const &function) const {
         function(edge, rate, first);
         first += rate;
     }
-}
-
-template <typename REAL>
-bool RateEvaluator<REAL>::evaluateLatticeBorder() const {
-    using Border = BorderEvaluator<REAL>;
-    typename Border::LatticeEdge edges[Border::kMaxLatticeFaceSize];
-    forEachEdge([&](int edge, int rate, int first) {
-        edges[edge] = {rate, rate - 1, getResult(0, first)};
-    });
-    return _border.EvaluateInLattice(edges, _resultStride, true);
 }
 
 template <typename REAL>

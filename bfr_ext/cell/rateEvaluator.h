@@ -82,7 +82,6 @@ private:
                                int faceSize, bool hasDerivatives);
     template <typename FUNCTION>
     void forEachEdge(FUNCTION const &function) const;
-    bool evaluateLatticeBorder() const;
     void evaluateVertex(int edge, int first) const;
     void evaluateEdge(int edge, int rate, int first) const;
     // What kind of face it is, with its parameterization.
