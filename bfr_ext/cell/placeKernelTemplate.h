@@ -96,15 +96,14 @@ struct
 #endif
 
 #ifdef OPENSUBDIVHEX_HAS_SHUFFLES
-/// Register OUT of four, in which x, y, z and any number of points alternate, from those of all x, y and
-/// z.
+/// Register OUT of three, in which x, y and z of points alternate, from those of all x, y and z.
 template <std::size_t OUT, typename LANES, std::size_t... I>
 LANES interleave(LANES const &x, LANES const &y, LANES const &z, std::index_sequence<I...>) {
     constexpr std::size_t kSize = sizeof...(I);
     LANES const xy = __builtin_shufflevector(
-        x, y, int((OUT * kSize + I) / 4 + ((OUT * kSize + I) % 4 == 1 ? kSize : 0))...);
+        x, y, int((OUT * kSize + I) / 3 + ((OUT * kSize + I) % 3 == 1 ? kSize : 0))...);
     return __builtin_shufflevector(
-        xy, z, int((OUT * kSize + I) % 4 < 2 ? I : kSize + (OUT * kSize + I) / 4)...);
+        xy, z, int((OUT * kSize + I) % 3 < 2 ? I : kSize + (OUT * kSize + I) / 3)...);
 }
 #endif
 
@@ -148,22 +147,21 @@ public:
         sums += factors * factor;
     }
 
-    /// Stores kSize slots, from those of the components.
-    static void StoreSlots(Lanes const &x, Lanes const &y, Lanes const &z, REAL *to) {
+    /// Stores kSize points, from those of the components.
+    static void StorePoints(Lanes const &x, Lanes const &y, Lanes const &z, REAL *to) {
 #ifdef OPENSUBDIVHEX_HAS_SHUFFLES
         constexpr std::make_index_sequence<kSize> kIndices;
         Store(interleave<0>(x, y, z, kIndices), to);
         Store(interleave<1>(x, y, z, kIndices), to + kSize);
         Store(interleave<2>(x, y, z, kIndices), to + 2 * kSize);
-        Store(interleave<3>(x, y, z, kIndices), to + 3 * kSize);
 #else
         REAL numbers[3][kSize];
         Store(x, numbers[0]);
         Store(y, numbers[1]);
         Store(z, numbers[2]);
-        for (std::size_t i = 0; i < kSize; ++i, to += 4) {
-            for (std::size_t k = 0; k < 4; ++k) {
-                to[k] = numbers[k < 3 ? k : 2][i];
+        for (std::size_t i = 0; i < kSize; ++i) {
+            for (std::size_t k = 0; k < 3; ++k) {
+                *to++ = numbers[k][i];
             }
         }
 #endif
@@ -172,13 +170,13 @@ public:
     /// The numbers of the places of a block, component by component.
     using Numbers = REAL[3][PlaceMatrix<REAL>::kMaxWidth];
 
-    /// The same place by place, of three components and one of no matter.
-    using Slots = REAL[PlaceMatrix<REAL>::kMaxWidth][4];
+    /// The same place by place, of three components.
+    using Points = REAL[PlaceMatrix<REAL>::kMaxWidth][3];
 
     /// \param begin   the first place of the block
     /// \param count   places of the block that are wanted, the first ones
     /// \param points  as those of PlaceSums, from the first component on that is wanted
-    /// \param result  Numbers, or Slots of three components
+    /// \param result  Numbers, or Points of three components
     template <std::size_t NUM_COMPONENTS, bool HAS_INDICES, typename RESULT>
     static void Form(PlaceMatrix<REAL> const &matrix, std::size_t begin, std::size_t count,
                      REAL const *points, std::ptrdiff_t stride, int const *indices,
@@ -265,11 +263,18 @@ private:
                 add(i + k, sums[k]);
             }
         }
-        for (std::size_t k = 0; i + k < numPoints; ++k) {
-            add(i + k, sums[k]);
+        static_assert(kNumSums == 4);
+        // No loop, in which GCC would keep the sums in memory.
+        if (i < numPoints) {
+            add(i, sums[0]);
+        }
+        if (i + 1 < numPoints) {
+            add(i + 1, sums[1]);
+        }
+        if (i + 2 < numPoints) {
+            add(i + 2, sums[2]);
         }
         Lanes total[NUM_COMPONENTS];
-        static_assert(kNumSums == 4);
         for (std::size_t k = 0; k < NUM_COMPONENTS; ++k) {
             total[k] = (sums[0][k] + sums[1][k]) + (sums[2][k] + sums[3][k]);
         }
@@ -300,8 +305,8 @@ private:
             Store(sums[k], numbers[k] + first);
         }
     }
-    static void storeSums(Lanes const (&sums)[3], std::size_t first, Slots &slots) {
-        StoreSlots(sums[0], sums[1], sums[2], slots[first]);
+    static void storeSums(Lanes const (&sums)[3], std::size_t first, Points &places) {
+        StorePoints(sums[0], sums[1], sums[2], places[first]);
     }
 };
 
@@ -363,24 +368,19 @@ void forBlockComponents(PlaceMatrix<REAL> const &matrix, SUMS const &sums,
     });
 }
 
-/// Writes points of three numbers from their slots.  Without gaps between points, a fourth number is where the
-/// next point begins, which is written afterwards: one register is stored faster than two parts of it.
+/// Writes points of three numbers.
 template <typename REAL>
-void writeRun(REAL const (*slots)[4], std::size_t count, REAL *results, std::ptrdiff_t stride) {
-    constexpr std::size_t kPoint = 3 * sizeof(REAL);
-    constexpr std::size_t kSlot = 4 * sizeof(REAL);
-    std::size_t i = 0;
+void writeRun(REAL const (*places)[3], std::size_t count, REAL *results, std::ptrdiff_t stride) {
     if (stride == 3) {
-        for (; i + 1 < count; ++i, results += 3) {
-            std::memcpy(results, slots[i], kSlot);
-        }
+        std::memcpy(results, places, count * sizeof(*places));
+        return;
     }
-    for (; i < count; ++i, results += stride) {
-        std::memcpy(results, slots[i], kPoint);
+    for (std::size_t i = 0; i < count; ++i, results += stride) {
+        std::memcpy(results, places[i], sizeof(*places));
     }
 }
 
-/// Writes what is wanted of a block, from TileSums::Slots or TileSums::Numbers.
+/// Writes what is wanted of a block, from TileSums::Points or TileSums::Numbers.
 template <std::size_t NUM_COMPONENTS, typename REAL, typename NUMBERS>
 void writePlaces(PlaceBlock const &block, NUMBERS const &numbers, REAL *results,
                  std::ptrdiff_t stride) {
@@ -433,7 +433,7 @@ private:
                                         _sums.resultStride);
         };
         if constexpr (NUM_COMPONENTS == 3) {
-            form(_slots);
+            form(_places);
         } else {
             form(_numbers);
         }
@@ -442,7 +442,7 @@ private:
     PlaceMatrix<REAL> const &_matrix;
     PlaceSums<REAL> const &_sums;
     typename Tiles::Numbers _numbers;
-    typename Tiles::Slots _slots;
+    typename Tiles::Points _places;
 };
 
 template <std::size_t BYTES, typename REAL>
