@@ -32,7 +32,6 @@ enum class PatternOf {
     RingCell,
     RingItem,
     SurfaceSamples,
-    SlopeBounds,
     SecondDerivatives,
     PatchPoints
 };
