@@ -11,9 +11,7 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
-#include <map>
 #include <mutex>
-#include <tuple>
 
 #include <opensubdiv/far/types.h>
 
@@ -210,7 +208,7 @@ LevelTessellation::LevelTessellation(CellTree const &tree, Polyline const edges[
     _tree = std::make_shared<Tree>(Tree{tree, std::move(polylines), std::move(edgeLevels), {}});
     setCells(mesh);
     if (tree.GetNumCells() <= kMaxCellsOfPlan) {
-        _cellPlan = std::make_shared<LazyCellPlan>();
+        _cellPlans = std::make_shared<LazyCellPlans>();
     }
 }
 
@@ -240,7 +238,7 @@ LevelTessellation::LevelTessellation(internal::FaceSections const &sections, int
     if (_levels.empty()) {
         _tree = std::make_shared<Tree>(Tree{tree, std::move(edges), {}, {}});
     } else {
-        _cellPlan = std::make_shared<LazyCellPlan>();
+        _cellPlans = std::make_shared<LazyCellPlans>();
     }
     setSection(mesh, sections);
 }
@@ -286,15 +284,13 @@ void LevelTessellation::initialize(Parameterization const &parameterization, int
     std::for_each(_levels.begin(), _levels.end() - 1,
                   [&](int level) { edges.emplace_back(level); });
     setCells(CellMesh(CellTree(size, _levels.data(), _levels.back()), edges.data()));
-    _cellPlan = std::make_shared<LazyCellPlan>();
+    _cellPlans = std::make_shared<LazyCellPlans>();
 }
 
-// Of points and of derivatives.
-struct LevelTessellation::LazyCellPlan {
-    std::once_flag once[2];
-    std::unique_ptr<internal::CellPlan const> plans[2];
-    std::once_flag onceSelection;
-    Selection selection;
+// Of faces that are in no lattice and of those that are, each of points and of derivatives.
+struct LevelTessellation::LazyCellPlans {
+    std::once_flag once[2][2];
+    std::unique_ptr<internal::CellPlan const> plans[2][2];
 };
 
 // The highest of the places that a plan has.
@@ -314,10 +310,12 @@ int LevelTessellation::getLevelOfPlaces(bool isOfDerivatives) const {
     return level;
 }
 
-internal::CellPlan const &LevelTessellation::getCellPlan(bool isOfDerivatives) const {
+internal::CellPlan const &LevelTessellation::getCellPlan(bool isInLattice,
+                                                         bool isOfDerivatives) const {
     using internal::CellPlan;
-    std::unique_ptr<CellPlan const> &plan = _cellPlan->plans[isOfDerivatives ? 1 : 0];
-    std::call_once(_cellPlan->once[isOfDerivatives ? 1 : 0], [&] {
+    std::size_t const kind[2] = {isInLattice ? 1U : 0U, isOfDerivatives ? 1U : 0U};
+    std::unique_ptr<CellPlan const> &plan = _cellPlans->plans[kind[0]][kind[1]];
+    std::call_once(_cellPlans->once[kind[0]][kind[1]], [&] {
         std::vector<internal::LeafPlaces::Place> places;
         places.reserve(_places.size());
         for (SectorCoords const &place : _places) {
@@ -325,40 +323,9 @@ internal::CellPlan const &LevelTessellation::getCellPlan(bool isOfDerivatives) c
         }
         plan = std::make_unique<CellPlan const>(
             GetFaceSize(), getLevelOfPlaces(isOfDerivatives), places,
-            isOfDerivatives ? CellPlan::Use::Derivatives : CellPlan::Use::Points);
+            isOfDerivatives ? CellPlan::Use::Derivatives : CellPlan::Use::Points, isInLattice);
     });
     return *plan;
-}
-
-LevelTessellation::Selection const &LevelTessellation::getSelection() const {
-    Selection &selection = _cellPlan->selection;
-    std::call_once(_cellPlan->onceSelection, [&] {
-        LevelTessellation const uniform(_parameterization, getLevelOfPlaces(false));
-        selection.levels = uniform._levels;
-        std::map<std::tuple<int, double, double>, int> numbers;
-        int const numOnBorder = uniform.GetNumBoundaryCoords();
-        selection.numUniformPlaces = uniform.GetNumCoords() - numOnBorder;
-        for (int place = numOnBorder; place < uniform.GetNumCoords(); ++place) {
-            SectorCoords const &coords = uniform._places[std::size_t(place)];
-            numbers[{coords.sector, coords.start, coords.end}] = place - numOnBorder;
-        }
-        for (int place = GetNumBoundaryCoords(); place < GetNumCoords(); ++place) {
-            SectorCoords const &coords = _places[std::size_t(place)];
-            selection.places.push_back(numbers.at({coords.sector, coords.start, coords.end}));
-        }
-    });
-    return selection;
-}
-
-std::size_t LevelTessellation::getSizeOfCells(bool hasDerivatives) const {
-    if (_tree) {
-        constexpr std::size_t kBytesOfCell = 16;
-        constexpr std::size_t kBytesOfPlace = 32; // of a plan, with the share of a leaf
-        return std::size_t(_tree->cells.GetNumCells()) * kBytesOfCell +
-               _tree->corners.capacity() * sizeof(CellCorner) +
-               (_cellPlan ? _places.size() * kBytesOfPlace : 0);
-    }
-    return getCellPlan().GetSize() + (hasDerivatives ? getCellPlan(true).GetSize() : 0);
 }
 
 // Takes the vertices of the mesh in an order, those of the boundary first, and returns their places.

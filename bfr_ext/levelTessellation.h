@@ -259,23 +259,15 @@ private:
         std::vector<int> edgeLevels;     // by edge, that of which it has the polyline; -1: none
         std::vector<CellCorner> corners; // of all places that are corners, ascending by cell
     };
-    // Which of the places that cells of one level have inside of the face those of a tessellation are.
-    struct Selection {
-        std::vector<int> levels; // of that tessellation
-        int numUniformPlaces;    // inside
-        std::vector<int> places; // by place of this one, both counted from the first one inside
-    };
 
     // That of a section of a face.
     LevelTessellation(internal::FaceSections const &sections, int section, Options const &options);
 
     // Which cells the places inside lie in, made when it is first asked for; of levels, and of trees that
     // are not large.
-    struct LazyCellPlan;
-    internal::CellPlan const &getCellPlan(bool isOfDerivatives = false) const;
+    struct LazyCellPlans;
+    internal::CellPlan const &getCellPlan(bool isInLattice, bool isOfDerivatives = false) const;
     int getLevelOfPlaces(bool isOfDerivatives) const;
-    // Where there is a plan; of few levels, since it has all of their places.
-    Selection const &getSelection() const;
     // The places that are corners of the cells that CellStencil has their derivatives from, which with
     // FaceMask::Average are others in other cells; ascending by cell.
     std::vector<CellCorner> findCornersOfDerivatives() const;
@@ -283,8 +275,6 @@ private:
     int getEdgeLevel(std::size_t edge) const {
         return _tree ? _tree->edgeLevels[edge] : _levels[edge];
     }
-    // What the cells take, in bytes.
-    std::size_t getSizeOfCells(bool hasDerivatives) const;
 
     void initialize(Parameterization const &parameterization, int numLevels, int const levels[],
                     Options const &options);
@@ -311,12 +301,12 @@ private:
     int _facetSize = 3;
     int _facetStride = 3;
     int _coordStride = 2;
-    std::vector<int> _levels;                // of edges, then of the inside; none of a tree
-    std::shared_ptr<Tree> _tree;             // null of levels
-    std::shared_ptr<Section> _section;       // null of a face
-    std::shared_ptr<LazyCellPlan> _cellPlan; // null of a large tree and of its sections
-    std::vector<double> _coords;             // two of each place
-    std::vector<SectorCoords> _places;       // the same, exactly
+    std::vector<int> _levels;                  // of edges, then of the inside; none of a tree
+    std::shared_ptr<Tree> _tree;               // null of levels
+    std::shared_ptr<Section> _section;         // null of a face
+    std::shared_ptr<LazyCellPlans> _cellPlans; // null of a large tree and of its sections
+    std::vector<double> _coords;               // two of each place
+    std::vector<SectorCoords> _places;         // the same, exactly
     std::vector<int> _firstEdgeCoords;   // by edge, the place of its first vertex; then their end
     std::vector<int> _firstFacetIndices; // by facet; then their end
     std::vector<int> _facetIndices;      // of all facets

@@ -2,7 +2,6 @@
 #include "surface.h"
 
 #include "cell/borderEvaluator.h"
-#include "cell/cellPattern.h"
 #include "cell/facePatches.h"
 #include "cell/patchEvaluator.h"
 #include "cell/plainFace.h"
@@ -30,12 +29,8 @@ internal::PlainFaceType const *internal::BaseType::GetPlain() const {
 
 namespace {
 
+using internal::CellPlan;
 using internal::CellStencil;
-
-// Matrices of finer levels leave the cache.
-constexpr int kLastLevelOfMatrices = 6;
-// Of finer ones, trees have too few.
-constexpr int kLastLevelOfSelection = 3;
 
 // A weighted sum of points, in double precision.
 template <typename REAL, typename WEIGHT>
@@ -301,107 +296,41 @@ template <typename REAL>
 void Surface<REAL>::evaluate(LevelTessellation const &tessellation, REAL const controlPoints[],
                              PointDescriptor const &pointDesc, REAL *const results[3],
                              PointDescriptor const &resultDesc) const {
-    if (tessellation._tree && !tessellation._cellPlan) {
+    if (!tessellation._cellPlans) {
         evaluateTree(tessellation, controlPoints, pointDesc, results, resultDesc);
         return;
     }
     // What it has taken of memory is kept for the next face.
     static thread_local internal::PatchEvaluator<REAL> evaluator;
     internal::PlainFaceType const *const plain = _type.GetPlain();
+    bool const isInLattice = _type.IsInLattice();
+    CellPlan const &plan = tessellation.getCellPlan(isInLattice);
+    CellPlan const *const ofDerivatives =
+        results[1] ? &tessellation.getCellPlan(isInLattice, true) : nullptr;
     if (!plain) {
-        evaluateInside(tessellation, evaluator, controlPoints, pointDesc, results, resultDesc);
+        if (!isInLattice) {
+            // Mostly no other face has the same, so that it would be waited for.
+            _type->GetStep().Prefetch();
+        }
+        evaluator.Evaluate(*_type, plan, pointDesc.size, controlPoints, pointDesc.stride,
+                           results[0], resultDesc.stride);
+        if (ofDerivatives) {
+            evaluator.EvaluateDerivatives(*_type, *ofDerivatives, pointDesc.size, controlPoints,
+                                          pointDesc.stride, results[1], results[2],
+                                          resultDesc.stride);
+        }
     }
     useBorder(controlPoints, pointDesc, [&](internal::BorderEvaluator<REAL> &border) {
         if (plain) {
             internal::RingValues<REAL> &values = border.GetRingValues();
-            evaluator.Evaluate(*plain, getTurns(), values, tessellation.getCellPlan(), results[0],
-                               resultDesc.stride);
-            if (results[1]) {
-                evaluator.EvaluateDerivatives(*plain, values, tessellation.getCellPlan(true),
-                                              results[1], results[2], resultDesc.stride);
+            evaluator.Evaluate(*plain, values, plan, results[0], resultDesc.stride);
+            if (ofDerivatives) {
+                evaluator.EvaluateDerivatives(*plain, values, *ofDerivatives, results[1],
+                                              results[2], resultDesc.stride);
             }
         }
-        bool const isDone = !plain && !tessellation._section && _type->IsInLattice() &&
-                            evaluateLatticeBorder(tessellation, border, results[0], resultDesc);
-        if (!isDone) {
-            evaluateBorder(tessellation, border, plain ? &evaluator : nullptr, results[0],
-                           resultDesc);
-        }
+        evaluateBorder(tessellation, border, results[0], resultDesc);
     });
-}
-
-// The points inside of a face whose type is known, and all derivatives.  The levels say which pattern it is.
-template <typename REAL>
-void Surface<REAL>::evaluateInside(LevelTessellation const &tessellation,
-                                   internal::PatchEvaluator<REAL> &evaluator,
-                                   REAL const controlPoints[], PointDescriptor const &pointDesc,
-                                   REAL *const results[3],
-                                   PointDescriptor const &resultDesc) const {
-    using internal::PatternOf;
-    using internal::PatternTable;
-    using Pattern = internal::CellPattern<REAL>;
-    int const numBorderPlaces = tessellation.GetNumBoundaryCoords();
-    // Of levels, which make() gives a tessellation of.
-    auto const getPattern = [&](PatternOf of, std::vector<int> const &levels,
-                                auto const &make) -> Pattern const & {
-        return _type->GetPatterns().template Get<Pattern>(
-            PatternTable::GetKind<REAL>(of), levels.data(), levels.data() + levels.size(), [&] {
-                LevelTessellation const &uniform = make();
-                std::vector<internal::BasePoint> places;
-                for (LevelTessellation::SectorCoords const &place : uniform._places) {
-                    places.push_back(internal::MakeBasePoint(GetFaceSize(), place.sector,
-                                                             {place.start, place.end}));
-                }
-                return of == PatternOf::Face
-                           ? Pattern(*_type, places, std::size_t(uniform.GetNumBoundaryCoords()))
-                           : Pattern(*_type, places);
-            });
-    };
-    auto const getOwn = [&]() -> LevelTessellation const & { return tessellation; };
-    auto const sumUp = [&](internal::MirrorMatrix<REAL> const &matrix, REAL *result) {
-        internal::SumUpPlaces(matrix, {controlPoints, pointDesc.stride, std::size_t(pointDesc.size),
-                                       nullptr, result, resultDesc.stride});
-    };
-    // Few types, and few levels, have matrices of a face: others go by cells.
-    bool const isPattern = _type->IsInLattice() && !tessellation._section;
-    std::vector<int> const &levels = tessellation._levels;
-    bool const isUniform =
-        isPattern && tessellation.IsUniform() && levels[0] <= kLastLevelOfMatrices;
-    if (isUniform) {
-        sumUp(getPattern(PatternOf::Face, levels, getOwn).matrices[0],
-              results[0] + std::ptrdiff_t(numBorderPlaces) * resultDesc.stride);
-    } else if (isPattern && tessellation.getLevelOfPlaces(false) <= kLastLevelOfSelection) {
-        LevelTessellation::Selection const &selection = tessellation.getSelection();
-        Pattern const &pattern = getPattern(PatternOf::Face, selection.levels, [&] {
-            return LevelTessellation(Parameterization(GetFaceSize()), selection.levels[0]);
-        });
-        static thread_local std::vector<REAL> uniform;
-        auto const size = std::size_t(pointDesc.size);
-        uniform.resize(size * std::size_t(selection.numUniformPlaces));
-        internal::SumUpPlaces(pattern.matrices[0], {controlPoints, pointDesc.stride, size, nullptr,
-                                                    uniform.data(), std::ptrdiff_t(size)});
-        REAL *result = results[0] + std::ptrdiff_t(numBorderPlaces) * resultDesc.stride;
-        for (int const place : selection.places) {
-            std::copy_n(&uniform[std::size_t(place) * size], size, result);
-            result += resultDesc.stride;
-        }
-    } else {
-        if (!_type->IsInLattice()) {
-            // Mostly no other face has the same, so that it would be waited for.
-            _type->GetStep().Prefetch();
-        }
-        evaluator.Evaluate(*_type, tessellation.getCellPlan(), pointDesc.size, controlPoints,
-                           pointDesc.stride, results[0], resultDesc.stride);
-    }
-    if (isUniform && results[1]) {
-        Pattern const &pattern = getPattern(PatternOf::FaceDerivatives, levels, getOwn);
-        sumUp(pattern.matrices[0], results[1]);
-        sumUp(pattern.matrices[1], results[2]);
-    } else if (results[1]) {
-        evaluator.EvaluateDerivatives(*_type, tessellation.getCellPlan(true), pointDesc.size,
-                                      controlPoints, pointDesc.stride, results[1], results[2],
-                                      resultDesc.stride);
-    }
 }
 
 // The control points are refined along the tree, as far as cells have corners that are asked for.
@@ -487,15 +416,14 @@ void Surface<REAL>::evaluateTree(LevelTessellation const &tessellation, REAL con
         }
     }
     useBorder(controlPoints, pointDesc, [&](internal::BorderEvaluator<REAL> &border) {
-        evaluateBorder(tessellation, border, nullptr, results[0], resultDesc);
+        evaluateBorder(tessellation, border, results[0], resultDesc);
     });
 }
 
-// Makes the points on the border, but for those inside of edges that were made with those inside of the face.
+// Makes the points on the border.
 template <typename REAL>
 void Surface<REAL>::evaluateBorder(LevelTessellation const &tessellation,
-                                   internal::BorderEvaluator<REAL> &evaluator,
-                                   internal::PatchEvaluator<REAL> const *inside, REAL p[],
+                                   internal::BorderEvaluator<REAL> &evaluator, REAL p[],
                                    PointDescriptor const &resultDesc) const {
     if (tessellation._section) {
         evaluateSectionBorder(tessellation, evaluator, p, resultDesc);
@@ -505,9 +433,6 @@ void Surface<REAL>::evaluateBorder(LevelTessellation const &tessellation,
     for (std::size_t edge = 0; edge < std::size_t(GetFaceSize()); ++edge) {
         int const first = tessellation._firstEdgeCoords[edge];
         evaluator.EvaluateVertex(edge, getResult(first));
-        if (inside && inside->HasEdge(edge)) {
-            continue;
-        }
         int const numPlaces = tessellation.GetNumEdgeCoords(int(edge));
         int const level = tessellation.getEdgeLevel(edge);
         if (level < 0) {
@@ -555,24 +480,6 @@ void Surface<REAL>::evaluateSectionBorder(LevelTessellation const &tessellation,
             std::copy_n(&edgePoints[std::size_t(run.index + i) * size], size, result);
         }
     }
-}
-
-// False where an edge has no level, or BorderEvaluator::EvaluateInLattice() is.
-template <typename REAL>
-bool Surface<REAL>::evaluateLatticeBorder(LevelTessellation const &tessellation,
-                                          internal::BorderEvaluator<REAL> &evaluator, REAL p[],
-                                          PointDescriptor const &resultDesc) const {
-    using Evaluator = internal::BorderEvaluator<REAL>;
-    typename Evaluator::LatticeEdge edges[Evaluator::kMaxLatticeFaceSize];
-    for (std::size_t edge = 0; edge < std::size_t(GetFaceSize()); ++edge) {
-        int const level = tessellation.getEdgeLevel(edge);
-        if (level < 0) {
-            return false;
-        }
-        edges[edge] = {level, tessellation.GetNumEdgeCoords(int(edge)),
-                       p + std::ptrdiff_t(tessellation._firstEdgeCoords[edge]) * resultDesc.stride};
-    }
-    return evaluator.EvaluateInLattice(edges, resultDesc.stride);
 }
 
 // Writes the weights of the point, and of derivatives as far as \p numDerivatives asks.

@@ -305,10 +305,6 @@ private:
     void evaluate(LevelTessellation const &tessellation, REAL const controlPoints[],
                   PointDescriptor const &pointDesc, REAL *const results[3],
                   PointDescriptor const &resultDesc) const;
-    void evaluateInside(LevelTessellation const &tessellation,
-                        internal::PatchEvaluator<REAL> &evaluator, REAL const controlPoints[],
-                        PointDescriptor const &pointDesc, REAL *const results[3],
-                        PointDescriptor const &resultDesc) const;
     void evaluateTree(LevelTessellation const &tessellation, REAL const controlPoints[],
                       PointDescriptor const &pointDesc, REAL *const results[3],
                       PointDescriptor const &resultDesc) const;
@@ -316,12 +312,8 @@ private:
     void useBorder(REAL const controlPoints[], PointDescriptor const &pointDesc,
                    FUNCTION const &function) const;
     void evaluateBorder(LevelTessellation const &tessellation,
-                        internal::BorderEvaluator<REAL> &evaluator,
-                        internal::PatchEvaluator<REAL> const *inside, REAL p[],
+                        internal::BorderEvaluator<REAL> &evaluator, REAL p[],
                         PointDescriptor const &resultDesc) const;
-    bool evaluateLatticeBorder(LevelTessellation const &tessellation,
-                               internal::BorderEvaluator<REAL> &evaluator, REAL p[],
-                               PointDescriptor const &resultDesc) const;
     void evaluateSectionBorder(LevelTessellation const &tessellation,
                                internal::BorderEvaluator<REAL> &evaluator, REAL p[],
                                PointDescriptor const &resultDesc) const;

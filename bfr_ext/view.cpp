@@ -246,101 +246,41 @@ private:
         if (_geometry.IsOutside(findBox(node))) {
             return CellVisibility::Outside;
         }
-        return isBackFacing(node, SlopeBounds::kMaxSteps) ? CellVisibility::BackFacing
-                                                          : CellVisibility::Visible;
+        return findFacing(node).IsBackFacing(_geometry.GetEye()) ? CellVisibility::BackFacing
+                                                                 : CellVisibility::Visible;
     }
 
-    // Whether the cell faces away, or all cells do that some steps make of it.
-    bool isBackFacing(Node &node, int numSteps) {
-        CellFacing &facing = findFacing(node);
-        if (facing.numSteps > numSteps || !areCornersBackFacing(facing)) {
-            return false;
-        }
-        if (facing.numSteps == 0 && areSlopesBackFacing(node, facing)) {
-            return true;
-        }
-        if (numSteps == 0) {
-            return false;
-        }
-        for (int i = 0; i < getNumChildren(node); ++i) {
-            Node child = makeChild(node, i);
-            if (!isBackFacing(child, numSteps - 1)) {
-                return false;
-            }
-        }
-        return true;
-    }
-
-    // Of a cell whose type has no bounds, only the children are asked.
-    static SlopeBounds const *findSlopeBounds(CellValues const &values) {
-        return values.HasSurfaceOfType() ? &SlopeBounds::Find(values.GetType()) : nullptr;
-    }
-
-    CellFacing &findFacing(Node &node) {
+    CellFacing const &findFacing(Node &node) {
         if (getMeasures(node).facing < 0) {
-            SlopeBounds const *const bounds = findSlopeBounds(makeValues(node));
-            CellFacing facing = {};
-            if (!bounds || !bounds->Exist()) {
-                facing.numSteps = bounds ? std::max(bounds->GetNumSteps(), 1) : 1;
-            }
-            if (facing.numSteps <= SlopeBounds::kMaxSteps) {
-                findCorners(node);
-                facing.corner = ToVector3(_corners.data());
-                for (std::size_t i = 3; i + 3 < _corners.size(); i += 3) {
-                    Vector3 const part =
-                        Cross(Subtract(ToVector3(&_corners[i]), facing.corner),
-                              Subtract(ToVector3(&_corners[i + 3]), facing.corner));
-                    facing.area = Subtract(facing.area, Scale(part, -1));
-                }
-            }
+            constexpr int kNumSteps = 2;
+            CellFacing::Maker maker;
+            addPolygons(makeCell(node), kNumSteps, maker);
             getMeasures(node).facing = int(_measures.facings.size());
-            _measures.facings.push_back(facing);
+            _measures.facings.push_back(maker.Make());
         }
         return _measures.facings[std::size_t(getMeasures(node).facing)];
     }
 
-    void findCorners(Node &node) {
-        std::size_t const cell = makeCell(node);
+    // Adds those of the cells that some steps make of a cell.
+    void addPolygons(std::size_t cell, int numSteps, CellFacing::Maker &maker) {
+        if (numSteps == 0) {
+            findCorners(cell);
+            maker.Add(_corners);
+            return;
+        }
+        std::size_t const first = _cells.GetFirstChild(cell);
+        for (int i = 0; i < _cells.GetNumChildren(cell); ++i) {
+            addPolygons(first + std::size_t(i), numSteps - 1, maker);
+        }
+    }
+
+    void findCorners(std::size_t cell) {
         CellValues const &values = _cells[cell];
         int const numCorners =
             values.IsPlainBase() ? values.GetNumChildren() - 1 : values.GetType().GetNumCorners();
         _corners.resize(3 * std::size_t(numCorners));
         for (int i = 0; i < numCorners; ++i) {
             _cells.EvaluateCorner(cell, i, &_corners[3 * std::size_t(i)]);
-        }
-    }
-
-    // Whether the polygon of the corners does, which others of the surface are likely to do as well then.
-    bool areCornersBackFacing(CellFacing const &facing) const {
-        return Dot(facing.area, Subtract(_geometry.GetEye(), facing.corner)) < 0;
-    }
-
-    // With m the unit normal of the slopes, all normals are m + s w, with w of length 1 at most in their
-    // plane.  With c the mean of the points and r how far they are from it, (m + s w) . (eye - p) is at
-    // most m . (eye - c) - m . (p - c) + s (|part of eye - c in the plane| + r).
-    bool areSlopesBackFacing(Node &node, CellFacing &facing) {
-        if (!facing.hasNormals) {
-            findNormals(makeValues(node), facing);
-        }
-        Vector3 const toEye = Subtract(_geometry.GetEye(), facing.center);
-        double const height = Dot(facing.normals.middle, toEye);
-        double const across = GetLength(Subtract(toEye, Scale(facing.normals.middle, height)));
-        return height + facing.depth + facing.normals.spread * (across + facing.radius) < 0;
-    }
-
-    static void findNormals(CellValues const &values, CellFacing &facing) {
-        facing.hasNormals = true;
-        facing.normals = findSlopeBounds(values)->GetNormals(values);
-        int const numPoints = values.GetNumPoints();
-        for (int i = 0; i < numPoints; ++i) {
-            for (std::size_t k = 0; k < 3; ++k) {
-                facing.center[k] += values.GetPoint(i)[k] / double(numPoints);
-            }
-        }
-        for (int i = 0; i < numPoints; ++i) {
-            Vector3 const d = Subtract(ToVector3(values.GetPoint(i)), facing.center);
-            facing.radius = std::max(facing.radius, GetLength(d));
-            facing.depth = std::max(facing.depth, -Dot(facing.normals.middle, d));
         }
     }
 
@@ -356,7 +296,7 @@ private:
 
     double findLongestSide(Node &node) {
         if (getMeasures(node).longestSide < 0) {
-            findCorners(node);
+            findCorners(makeCell(node));
             double longest = 0;
             for (std::size_t i = 0; i < _corners.size(); i += 3) {
                 std::size_t const next = i + 3 < _corners.size() ? i + 3 : 0;
@@ -370,7 +310,7 @@ private:
 
     double findThickness(Node &node) {
         if (getMeasures(node).thickness < 0) {
-            findCorners(node);
+            findCorners(makeCell(node));
             double const thickness = _flatness.FindThickness(_cells, node.cell, _corners);
             getMeasures(node).thickness = thickness;
         }

@@ -53,15 +53,12 @@ enum class CellVisibility : unsigned char {
 ///
 /// **Lengths.**  A cell can be refined, too, until its sides are shorter than some pixels.
 ///
-/// **Culling** leaves cells as they are which are not seen, and is never wrong: meshes stay closed, and
-/// what is culled is coarse.  A cell is outside of the picture if the box of its control points is on the
-/// outer side of one of the planes through its sides, or behind the eye: so is their hull, and with it
-/// the surface.  A cell faces away if (Du x Dv) . (eye - p) < 0 for all its points p.  That is shown
-/// where the lattice is regular and derivatives are bounded by the second differences of control
-/// points, with FaceMask::Smooth and Cosine, of the cell or of all cells some steps on; a cell at a base
-/// vertex or base face that is no hexagon, at a feature, and with FaceMask::Average any cell, counts as
-/// visible.  A part of a sharp edge or boundary is outside as a cell is, by the box of the points that its
-/// curve depends on.  It is never taken for one that faces away, as no cell beside it is.
+/// **Culling** leaves cells as they are which are not seen: meshes stay closed, and what is culled is coarse.  A
+/// cell is outside of the picture if the box of its control points is on the outer side of one of the planes through its
+/// sides, or behind the eye: so is their hull, and with it the surface.  A cell faces away if (Du x Dv) . (eye - p) < 0
+/// for all its points p.  That is estimated, as flatness is: from the polygons of the cells two steps on, whose normals
+/// are taken to spread, and whose corners to lie, twice as far.  A part of a sharp edge or boundary is outside as a
+/// cell is, by the box of the points that its curve depends on.  It is never taken for one that faces away.
 ///
 /// **Animation.**  Given the tree of the last frame, a cell that is refined there stays refined until the
 /// error is below a fraction of what is allowed, so that nothing flickers; and so do sharp edges and

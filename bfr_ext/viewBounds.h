@@ -25,9 +25,8 @@ struct MeshMeasures;
 /// as those that are made without.
 ///
 /// **Memory** is what Options::SetMaxMemory() says, and three doubles for each vertex of the mesh.  Each
-/// cell that a view asked for takes about 100 bytes; for culling, 150 more, and there cells up to three steps
-/// on are asked for.  What has no room is found anew by each view.  Besides there are the tessellations of the
-/// last PatchStream of a forest, as far as that keeps them, for those of the next forest.
+/// cell that a view asked for takes about 80 bytes; for culling, 80 more.  What has no room is found anew by
+/// each view.
 ///
 /// One thread at a time may use it; View::MakeForest() has threads of its own.  std::bad_alloc passes
 /// through.

@@ -65,6 +65,8 @@ void BorderEvaluator<REAL>::SetFace(CellType const &type, int const *turns, REAL
     _size = size;
     _paddedSize = StepMatrix::GetPaddedSize(size);
     _edge = {};
+    _places = {};
+    _vertex = {};
 }
 
 template <typename REAL>
@@ -82,6 +84,8 @@ void BorderEvaluator<REAL>::SetFace(PlainFaceType const &type, int const *turns,
     _size = size;
     _paddedSize = _values.GetPaddedSize();
     _edge = {};
+    _places = {};
+    _vertex = {};
 }
 
 template <typename REAL>
@@ -101,7 +105,7 @@ void BorderEvaluator<REAL>::EvaluateVertex(std::size_t vert, REAL *result) {
                           _stride, _size);
         _vertexValues.EvaluateVertex(*item.rings->cell, 0, 0, result);
     } else {
-        SumUpPlaces(getVertexMatrix(*item.type),
+        SumUpPlaces(findVertex(*item.type),
                     {_points, _stride, _size, item.points.data(), result, 0});
     }
 }
@@ -112,7 +116,7 @@ void BorderEvaluator<REAL>::setEdge(std::size_t edge) {
         return;
     }
     _edgeNumber = edge;
-    _isReversed = IsReversed(edge);
+    _isReversed = _turns[edge] == 1;
     if (_plain) {
         FaceRings const &face = _plain->GetRings();
         if (RingCell const *const cell = face.GetLongEdge(int(edge), _isReversed)) {
@@ -167,33 +171,34 @@ void BorderEvaluator<REAL>::EvaluateRate(std::size_t edge, int rate, REAL *resul
     evaluateInside(edge, true, rate, results, stride);
 }
 
-// Calls function(matrix) with that of the places of a level, or of a rate.
+// That of the places of a level, or of a rate.
 template <typename REAL>
-template <typename FUNCTION>
-void BorderEvaluator<REAL>::usePlaces(CellType const &type, RingCell const *cell, bool isRate,
-                                      int level, FUNCTION const &function) {
+PlaceMatrix<REAL> const &BorderEvaluator<REAL>::findPlaces(bool isRate, int level) {
+    PatternTable *const patterns = &getPatterns(*_edge.type, _edge.cell);
+    PatternOf const of = isRate ? PatternOf::BorderRate : PatternOf::Border;
+    if (_places.patterns == patterns && _places.of == of && _places.level == level) {
+        return *_places.matrix;
+    }
     auto const make = [&] {
-        return makeMatrix(type, cell, isRate ? makeRatePoints(level) : makeEdgePoints(level));
+        return makeMatrix(*_edge.type, _edge.cell,
+                          isRate ? makeRatePoints(level) : makeEdgePoints(level));
     };
     if (isRate && level > kMaxKeptRate) {
-        function(make());
-        return;
+        return _placeMatrix = make();
     }
-    PatternOf const of = isRate ? PatternOf::BorderRate : PatternOf::Border;
-    function(getPatterns(type, cell)
-                 .template Get<PlaceMatrix<REAL>>(PatternTable::GetKind<REAL>(of), &level,
-                                                  &level + 1, make));
+    _places = {patterns, of, level,
+               &patterns->Get<PlaceMatrix<REAL>>(PatternTable::GetKind<REAL>(of), &level,
+                                                 &level + 1, make)};
+    return *_places.matrix;
 }
 
 template <typename REAL>
 void BorderEvaluator<REAL>::evaluateInside(std::size_t edge, bool isRate, int level, REAL *results,
                                            std::ptrdiff_t stride) {
     setEdge(edge);
-    usePlaces(*_edge.type, _edge.cell, isRate, level, [&](PlaceMatrix<REAL> const &matrix) {
-        auto const last = std::ptrdiff_t(matrix.GetNumPlaces()) - 1;
-        sumUp(matrix, _isReversed ? results + last * stride : results,
-              _isReversed ? -stride : stride);
-    });
+    PlaceMatrix<REAL> const &matrix = findPlaces(isRate, level);
+    auto const last = std::ptrdiff_t(matrix.GetNumPlaces()) - 1;
+    sumUp(matrix, _isReversed ? results + last * stride : results, _isReversed ? -stride : stride);
 }
 
 // They are kept one by one, since polylines have few in common, and without what a matrix of one place is
@@ -224,48 +229,6 @@ void BorderEvaluator<REAL>::EvaluateKeptPoint(std::size_t edge, Pair const &plac
 }
 
 template <typename REAL>
-bool BorderEvaluator<REAL>::EvaluateInLattice(LatticeEdge const *edges, std::ptrdiff_t resultStride,
-                                              bool areRates) const {
-    CellType::LatticeBorder const &border = _type->GetLatticeBorder();
-    if (!border.isAlike) {
-        return false;
-    }
-    typename ItemSums<REAL>::Item items[kMaxLatticeFaceSize];
-    auto const getItem = [&](std::size_t item) -> CellType::BorderItem const & {
-        return *border.items[item][std::size_t(_turns[item])];
-    };
-    auto const evaluate = [&](PlaceMatrix<REAL> const &matrix, std::size_t numItems) {
-        SumUpPlaces(matrix, ItemSums<REAL>{_points, _stride, _size, items, numItems});
-    };
-    for (std::size_t edge = 0; edge < _numEdges; ++edge) {
-        items[edge] = {getItem(_numEdges + edge).points.data(), edges[edge].results, 0};
-    }
-    evaluate(getVertexMatrix(*getItem(_numEdges).type), _numEdges);
-    bool isDone[kMaxLatticeFaceSize] = {};
-    for (std::size_t first = 0; first < _numEdges; ++first) {
-        int const level = edges[first].level;
-        std::size_t numItems = 0;
-        for (std::size_t edge = first; edge < _numEdges; ++edge) {
-            int const numPlaces = edges[edge].numPlaces;
-            if (isDone[edge] || edges[edge].level != level || numPlaces == 0) {
-                continue;
-            }
-            isDone[edge] = true;
-            CellType::BorderItem const &item = getItem(edge);
-            items[numItems++] = {item.points.data(),
-                                 edges[edge].results +
-                                     std::ptrdiff_t(item.isReversed ? numPlaces : 1) * resultStride,
-                                 item.isReversed ? -resultStride : resultStride};
-        }
-        if (numItems > 0) {
-            usePlaces(*getItem(0).type, nullptr, areRates, level,
-                      [&](PlaceMatrix<REAL> const &matrix) { evaluate(matrix, numItems); });
-        }
-    }
-    return true;
-}
-
-template <typename REAL>
 PlaceMatrix<REAL> BorderEvaluator<REAL>::makeMatrix(CellType const &type, RingCell const *cell,
                                                     std::vector<double> const &points) {
     PlaceMatrix<REAL> matrix(points.size(),
@@ -278,13 +241,17 @@ PlaceMatrix<REAL> BorderEvaluator<REAL>::makeMatrix(CellType const &type, RingCe
 }
 
 template <typename REAL>
-PlaceMatrix<REAL> const &BorderEvaluator<REAL>::getVertexMatrix(CellType const &type) {
-    return type.GetPatterns().template Get<PlaceMatrix<REAL>>(
-        PatternTable::GetKind<REAL>(PatternOf::Border), nullptr, nullptr, [&] {
-            PlaceMatrix<REAL> matrix(1, std::size_t(type.GetNumPoints()));
-            matrix.Set(0, type.GetCornerPoints()[0]);
-            return matrix;
-        });
+PlaceMatrix<REAL> const &BorderEvaluator<REAL>::findVertex(CellType const &type) {
+    if (_vertex.patterns != &type.GetPatterns()) {
+        _vertex.patterns = &type.GetPatterns();
+        _vertex.matrix = &type.GetPatterns().template Get<PlaceMatrix<REAL>>(
+            PatternTable::GetKind<REAL>(PatternOf::Border), nullptr, nullptr, [&] {
+                PlaceMatrix<REAL> matrix(1, std::size_t(type.GetNumPoints()));
+                matrix.Set(0, type.GetCornerPoints()[0]);
+                return matrix;
+            });
+    }
+    return *_vertex.matrix;
 }
 
 template class BorderEvaluator<float>;

@@ -28,9 +28,6 @@ public:
     /// Of the rings of a plain face.
     RingValues<REAL> &GetRingValues() { return _values; }
 
-    /// Whether an edge runs against the face.
-    bool IsReversed(std::size_t edge) const { return _turns[edge] == 1; }
-
     /// Writes the point of a vertex.
     void EvaluateVertex(std::size_t vert, REAL *result);
 
@@ -50,24 +47,7 @@ public:
     /// Numbers of a point.
     std::size_t GetSize() const { return _size; }
 
-    static constexpr int kMaxLatticeFaceSize = 6;
-    /// An edge of a face in a lattice, or the vertex before it alone.
-    struct LatticeEdge {
-        int level;     ///< or the rate
-        int numPlaces; ///< inside
-        REAL *results; ///< of the vertex; those of the places inside are behind it
-    };
-    /// \brief Evaluates the border of a face in a lattice: all vertices together, and all edges with the same places,
-    /// which takes less time than one by one.
-    ///
-    /// \param edges     of all edges, which have levels
-    /// \param areRates  they have rates
-    /// \return          false where edges or vertices are not all of one type: nothing is written then
-    bool EvaluateInLattice(LatticeEdge const *edges, std::ptrdiff_t resultStride,
-                           bool areRates = false) const;
-
 private:
-    static PlaceMatrix<REAL> const &getVertexMatrix(CellType const &type);
     // What the places of an edge are sums of.
     struct Sources {
         CellType const *type;
@@ -82,9 +62,8 @@ private:
     static PatternTable &getPatterns(CellType const &type, RingCell const *cell) {
         return cell ? cell->GetPatterns() : type.GetPatterns();
     }
-    template <typename FUNCTION>
-    static void usePlaces(CellType const &type, RingCell const *cell, bool isRate, int level,
-                          FUNCTION const &function);
+    PlaceMatrix<REAL> const &findPlaces(bool isRate, int level);
+    PlaceMatrix<REAL> const &findVertex(CellType const &type);
     void evaluateInside(std::size_t edge, bool isRate, int level, REAL *results,
                         std::ptrdiff_t stride);
     // What a plain face has no rings for.
@@ -109,7 +88,16 @@ private:
     std::size_t _edgeNumber = 0;
     Sources _edge = {};
     bool _isReversed = false;
-    PlaceMatrix<REAL> _placeMatrix; // of a place that is kept
+    // The matrices of the edge and of the vertex that were last asked for: mostly others of the face are alike.
+    struct Found {
+        PatternTable *patterns;
+        PatternOf of;
+        int level;
+        PlaceMatrix<REAL> const *matrix;
+    };
+    Found _places = {};
+    Found _vertex = {};
+    PlaceMatrix<REAL> _placeMatrix; // that is not kept with the type
     std::vector<int> _indices;
     std::vector<REAL> _paddedPoints;
     std::vector<REAL> _stepPoints;

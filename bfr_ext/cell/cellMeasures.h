@@ -3,7 +3,6 @@
 #define OPENSUBDIVHEX_BFR_EXT_CELL_CELL_MEASURES_H
 
 #include "flatness.h"
-#include "slopeBounds.h"
 #include "vector3.h"
 
 #include <algorithm>
@@ -39,17 +38,75 @@ struct CellMeasures {
     int facing = -1;         ///< in the same face; -1: not found
 };
 
-/// \brief Where a cell faces: (Du x Dv) at its points.
+/// \brief Where a cell faces, estimated from the polygons of the corners of the cells that some steps make of it: their
+/// normals, and where their corners are.
+///
+/// With m the unit normal of all, others are m + s w, with w of length 1 at most in the plane across from it.  With c the
+/// mean of the places and r how far they are from it, (m + s w) . (eye - p) is at most m . (eye - c) - m . (p - c) +
+/// s (|part of eye - c in the plane| + r).
 struct CellFacing {
-    int numSteps = 0;    ///< how many steps on all cells have bounds of their normals, at least
-    Vector3 corner = {}; ///< one of the surface's points at corners
-    Vector3 area = {};   ///< twice that of the polygon of these, along its normal
-    // Of the cell as a whole, from here on, once it is asked for.
-    bool hasNormals = false;
-    SlopeBounds::Normals normals = {};
-    Vector3 center = {}; ///< of the points
-    double radius = 0;   ///< of the points around it
-    double depth = 0;    ///< of the points below it, along the middle normal
+    class Maker;
+
+    bool IsBackFacing(Vector3 const &eye) const {
+        Vector3 const toEye = Subtract(eye, center);
+        double const height = Dot(normal, toEye);
+        double const across = GetLength(Subtract(toEye, Scale(normal, height)));
+        return height + depth + spread * (across + radius) < 0;
+    }
+
+    Vector3 normal = {};
+    double spread = std::numeric_limits<double>::infinity(); ///< s; infinite where nothing is known
+    Vector3 center = {};
+    double radius = 0; ///< r
+    double depth = 0;  ///< of places below the center, along the normal
+};
+
+/// Makes it of polygons.
+class CellFacing::Maker {
+public:
+    /// \param corners  three numbers each
+    void Add(std::vector<double> const &corners) {
+        Vector3 const area = FindArea(corners);
+        _areas.push_back(area);
+        _sum = internal::Add(_sum, area);
+        for (std::size_t i = 0; i < corners.size(); i += 3) {
+            _places.push_back(ToVector3(&corners[i]));
+            _sumOfPlaces = internal::Add(_sumOfPlaces, _places.back());
+        }
+    }
+    CellFacing Make() const {
+        // What lies between the polygons, and what normals have in each of them.
+        constexpr double kFactor = 2;
+        CellFacing facing;
+        double const length = GetLength(_sum);
+        if (!(length > 0)) {
+            return facing;
+        }
+        facing.normal = Scale(_sum, 1 / length);
+        facing.center = Scale(_sumOfPlaces, 1 / double(_places.size()));
+        double spread = 0;
+        for (Vector3 const &area : _areas) {
+            double const height = Dot(facing.normal, area);
+            if (!(height > 0)) {
+                return facing;
+            }
+            spread =
+                std::max(spread, GetLength(Subtract(area, Scale(facing.normal, height))) / height);
+        }
+        facing.spread = kFactor * spread;
+        for (Vector3 const &place : _places) {
+            Vector3 const d = Subtract(place, facing.center);
+            facing.radius = std::max(facing.radius, kFactor * GetLength(d));
+            facing.depth = std::max(facing.depth, -kFactor * Dot(facing.normal, d));
+        }
+        return facing;
+    }
+
+private:
+    std::vector<Vector3> _areas;
+    Vector3 _sum = {};
+    std::vector<Vector3> _places;
+    Vector3 _sumOfPlaces = {};
 };
 
 /// \brief The same of the cells of a base face that views have asked for: first that of the face, and

@@ -11,6 +11,7 @@ namespace {
 // Matrices with more rows than this makes leave the cache, and those with fewer are taken too often.
 constexpr int kNumStepsOfHalves = 4;
 constexpr int kNumStepsOfWholes = 3;
+constexpr int kNumStepsOfFaces = 5; // in lattices
 
 Pair getMiddle(Pair const &p, Pair const &q) { return {(p[0] + q[0]) / 2, (p[1] + q[1]) / 2}; }
 
@@ -41,17 +42,19 @@ LeafPlaces::LeafPlaces(int faceSize, int numSteps) : _faceSize(faceSize), _numSt
         for (int sector = 0; sector < faceSize; ++sector) {
             add({sector, {1, 0}});
         }
-        refineWhole(1, numSteps);
+        refine({-1, {{{1, 0}}}}, numSteps);
+        // Those on the sides last: tessellations have them apart, or first.
+        std::stable_partition(_places.begin(), _places.end(), [](Place const &place) {
+            return place.coords[0] + place.coords[1] != 1;
+        });
     } else {
         for (Pair const &corner : HalfCell::kCorners) {
             add({0, corner});
         }
-        refineHalf(0,
-                   {HalfCell::kCorners[0], HalfCell::kCorners[1], HalfCell::kCorners[2],
-                    HalfCell::kCorners[3]},
-                   numSteps);
-    }
-    if (faceSize == 0) {
+        refine({0,
+                {HalfCell::kCorners[0], HalfCell::kCorners[1], HalfCell::kCorners[2],
+                 HalfCell::kCorners[3]}},
+               numSteps);
         std::stable_sort(_places.begin(), _places.end(), [&](Place const &a, Place const &b) {
             Group const group = findGroup(a.coords);
             Group const other = findGroup(b.coords);
@@ -100,38 +103,46 @@ void LeafPlaces::add(Place const &place) {
     }
 }
 
-void LeafPlaces::refineWhole(double scale, int numSteps) {
-    for (; numSteps > 0; --numSteps, scale /= 2) {
-        for (int sector = 0; sector < _faceSize; ++sector) {
-            add({sector, {scale / 2, 0}});
+// Level by level, since tessellations have places in that order.
+void LeafPlaces::refine(Cell const &root, int numSteps) {
+    std::vector<Cell> cells = {root};
+    for (; numSteps > 0; --numSteps) {
+        std::vector<Cell> children;
+        for (Cell const &cell : cells) {
+            if (cell.sector < 0) {
+                double const scale = cell.corners[0][0];
+                children.push_back({-1, {{{scale / 2, 0}}}});
+                for (int sector = 0; sector < _faceSize; ++sector) {
+                    add({sector, {scale / 2, 0}});
+                    children.push_back(
+                        {sector, {{{scale, 0}, {0, scale}, {0, scale / 2}, {scale / 2, 0}}}});
+                }
+                continue;
+            }
+            Pair const middle = getMiddle(cell.corners[0], cell.corners[1]);
+            std::array<Pair, 4> inner;
+            for (std::size_t i = 0; i < 4; ++i) {
+                inner[i] = getMiddle(cell.corners[i], middle);
+                add({cell.sector, inner[i]});
+            }
+            children.push_back({cell.sector, inner});
+            for (std::size_t i = 1; i < 4; ++i) {
+                std::size_t const next = (i + 1) % 4;
+                children.push_back(
+                    {cell.sector, {{cell.corners[i], cell.corners[next], inner[next], inner[i]}}});
+            }
         }
-        for (int sector = 0; sector < _faceSize; ++sector) {
-            refineHalf(sector, {{{scale, 0}, {0, scale}, {0, scale / 2}, {scale / 2, 0}}},
-                       numSteps - 1);
-        }
+        cells.swap(children);
     }
 }
 
-void LeafPlaces::refineHalf(int sector, std::array<Pair, 4> const &corners, int numSteps) {
-    if (numSteps == 0) {
-        return;
-    }
-    Pair const middle = getMiddle(corners[0], corners[1]);
-    std::array<Pair, 4> inner;
-    for (std::size_t i = 0; i < 4; ++i) {
-        inner[i] = getMiddle(corners[i], middle);
-        add({sector, inner[i]});
-    }
-    refineHalf(sector, inner, numSteps - 1);
-    for (std::size_t i = 1; i < 4; ++i) {
-        std::size_t const next = (i + 1) % 4;
-        refineHalf(sector, {{corners[i], corners[next], inner[next], inner[i]}}, numSteps - 1);
-    }
-}
-
-CellPlan::CellPlan(int faceSize, int level, std::vector<LeafPlaces::Place> const &places, Use use)
+CellPlan::CellPlan(int faceSize, int level, std::vector<LeafPlaces::Place> const &places, Use use,
+                   bool isInLattice)
     : _faceSize(faceSize) {
-    _nodes.push_back({0, true, 0, level, {}, nullptr, {}, {}, {{1, 0}, {0, 1}}, {}});
+    _nodes.push_back({0, true, 0, level, {}, nullptr, {}, {{1, 0}, {0, 1}}, {}});
+    if (isInLattice && level <= kNumStepsOfFaces) {
+        setLeaf(_nodes[0]);
+    }
     for (std::size_t i = 0; i < places.size(); ++i) {
         LeafPlaces::Place place = places[i];
         if (use == Use::Points && place.coords[0] + place.coords[1] == 1) {
@@ -164,12 +175,8 @@ CellPlan::CellPlan(int faceSize, int level, std::vector<LeafPlaces::Place> const
         }
         leaf.runs.push_back({int(leaf.leaf->Find(place)), int(i), 1});
     }
-    if (use == Use::Points) {
-        addEdges(places);
-    }
     for (Node &node : _nodes) {
         joinRuns(node.runs);
-        joinRuns(node.runsWithEdge);
         node.corners.shrink_to_fit();
     }
     _nodes.shrink_to_fit();
@@ -211,7 +218,6 @@ std::size_t CellPlan::findChild(std::size_t node, CellStep const &step, Pair con
                   {},
                   nullptr,
                   {},
-                  {},
                   {toCoords[0], toCoords[1]},
                   {}};
     if (child.isWhole) {
@@ -220,68 +226,20 @@ std::size_t CellPlan::findChild(std::size_t node, CellStep const &step, Pair con
         child.toCoords[1] = {0, scale};
     }
     if (child.numSteps <= (child.isWhole ? kNumStepsOfWholes : kNumStepsOfHalves)) {
-        int const size = child.isWhole ? _faceSize : 0;
-        std::unique_ptr<LeafPlaces const> &leafPlaces = _leafPlaces[{size, child.numSteps}];
-        if (!leafPlaces) {
-            leafPlaces = std::make_unique<LeafPlaces>(size, child.numSteps);
-        }
-        child.leaf = leafPlaces.get();
+        setLeaf(child);
     }
     _nodes[node].children.push_back(_nodes.size());
     _nodes.push_back(std::move(child));
     return _nodes.size() - 1;
 }
 
-// Adds the edges whose places are all in half cells that are leaves.  Others are made apart: so is an edge with
-// finer places.
-void CellPlan::addEdges(std::vector<LeafPlaces::Place> const &places) {
-    std::vector<std::vector<PlaceRun>> edges(static_cast<std::size_t>(_faceSize));
-    std::vector<Node *> leaves(edges.size());
-    for (std::size_t const child : _nodes[0].children) {
-        Node &node = _nodes[child];
-        if (node.leaf && !node.isWhole) {
-            leaves[node.child - 1] = &node;
-        }
+void CellPlan::setLeaf(Node &node) {
+    int const size = node.isWhole ? _faceSize : 0;
+    std::unique_ptr<LeafPlaces const> &leafPlaces = _leafPlaces[{size, node.numSteps}];
+    if (!leafPlaces) {
+        leafPlaces = std::make_unique<LeafPlaces>(size, node.numSteps);
     }
-    for (std::size_t i = 0; i < places.size(); ++i) {
-        Pair const &coords = places[i].coords;
-        auto const edge = std::size_t(places[i].sector);
-        bool const isInEdge = coords[0] + coords[1] == 1 && coords[0] != 0 && coords[1] != 0;
-        if (!isInEdge || !leaves[edge]) {
-            continue;
-        }
-        LeafPlaces::Place const place = {0, HalfCell::kFromSector.Apply(coords)};
-        if (leaves[edge]->leaf->Has(place)) {
-            edges[edge].push_back({int(leaves[edge]->leaf->Find(place)), int(i), 1});
-        } else {
-            leaves[edge] = nullptr;
-        }
-    }
-    for (std::size_t edge = 0; edge < edges.size(); ++edge) {
-        if (leaves[edge] && !edges[edge].empty()) {
-            std::vector<PlaceRun> &runs = leaves[edge]->runsWithEdge;
-            runs = leaves[edge]->runs;
-            runs.insert(runs.end(), edges[edge].begin(), edges[edge].end());
-        }
-    }
-}
-
-// Nodes are many, and their arrays short: what the heap takes for blocks counts.
-std::size_t CellPlan::GetSize() const {
-    static constexpr std::size_t kLeastBlock = 4 * sizeof(void *);
-    auto const getBytes = [](auto const &array) {
-        std::size_t const size = array.capacity() * sizeof(array[0]);
-        return size == 0 ? 0 : std::max(size + 2 * sizeof(void *), kLeastBlock);
-    };
-    std::size_t size = getBytes(_nodes);
-    for (Node const &node : _nodes) {
-        size += getBytes(node.children) + getBytes(node.runs) + getBytes(node.runsWithEdge) +
-                getBytes(node.corners);
-    }
-    for (auto const &leafPlaces : _leafPlaces) {
-        size += leafPlaces.second->GetMemory();
-    }
-    return size;
+    node.leaf = leafPlaces.get();
 }
 
 } // namespace OpenSubdivHex::BfrExt::internal

@@ -27,15 +27,8 @@ public:
 
     int GetNumSteps() const { return _numSteps; }
     std::size_t GetSize() const { return _places.size(); }
-    /// In bytes.
-    std::size_t GetMemory() const {
-        constexpr std::size_t kBytesOfLinks = 6 * sizeof(void *); // of a node of the map
-        return sizeof(LeafPlaces) + _places.capacity() * sizeof(Place) +
-               _rows.size() * (sizeof(Key) + sizeof(std::size_t) + kBytesOfLinks);
-    }
     Place const &operator[](std::size_t row) const { return _places[row]; }
     std::size_t Find(Place const &place) const { return _rows.at(getKey(place)); }
-    bool Has(Place const &place) const { return _rows.count(getKey(place)) > 0; }
 
 private:
     using Key = std::tuple<int, double, double>;
@@ -43,11 +36,15 @@ private:
     // The groups of places that half cells have, in their order.
     enum Group { kInside, kLastSide, kFirstCorner, kFirstSide, kSecondSide, kThirdSide, kCorners };
 
+    struct Cell {
+        int sector;                  // -1: of a whole cell
+        std::array<Pair, 4> corners; // the first one alone of a whole cell
+    };
+
     Key getKey(Place const &place) const;
     static Group findGroup(Pair const &coords);
     void add(Place const &place);
-    void refineWhole(double scale, int numSteps);
-    void refineHalf(int sector, std::array<Pair, 4> const &corners, int numSteps);
+    void refine(Cell const &root, int numSteps);
 
     int const _faceSize;
     int const _numSteps;
@@ -61,7 +58,8 @@ private:
 ///
 /// A place that several leaves have belongs to that which CellStencil follows it to, so that it is made
 /// once.  Derivatives are those of the first cell that has the place as a corner, as far as that makes a
-/// difference.  No base face is a leaf: there are many types of these, and few of the cells in them.
+/// difference.  Base faces in lattices are leaves themselves as long as their places are few; others are not: there are
+/// many types of these, and few of the cells in them.
 class CellPlan {
 public:
     /// A place that is a corner of a cell.
@@ -77,12 +75,9 @@ public:
         int depth;
         int numSteps; ///< that are left
         std::vector<std::size_t> children;
-        /// Of leaves, with the rows that are of places, ascending.
+        /// Of leaves, with the rows that are of places, ascending; a base face may have none.
         LeafPlaces const *leaf;
         std::vector<PlaceRun> runs;
-        /// In a plan for points, of a half cell that has all places that the tessellation has inside of an edge
-        /// of the face: the same with these.
-        std::vector<PlaceRun> runsWithEdge;
         /// Of a plan for derivatives: of u and v, the derivatives by them of what those of the leaf are
         /// by, which are the coordinates in a half cell or its own u and v in a whole one; and the
         /// corners of cells that are no leaves.
@@ -92,20 +87,20 @@ public:
     /// What is to be evaluated.
     enum class Use { Points, Derivatives };
 
-    /// \param level   that of the places, at most
-    /// \param places  of points, those on the border of the face are made apart, but for runsWithEdge
-    CellPlan(int faceSize, int level, std::vector<LeafPlaces::Place> const &places, Use use);
+    /// \param level        that of the places, at most
+    /// \param places       of points, those on the border of the face are made apart
+    /// \param isInLattice  whether many faces are of the type of the base face
+    CellPlan(int faceSize, int level, std::vector<LeafPlaces::Place> const &places, Use use,
+             bool isInLattice);
 
     /// Node 0 is the face.
     Node const &operator[](std::size_t node) const { return _nodes[node]; }
-    /// Memory, in bytes.
-    std::size_t GetSize() const;
 
 private:
     bool addCorner(std::size_t node, LeafPlaces::Place const &place, Pair const (&toCoords)[2],
                    int number);
+    void setLeaf(Node &node);
     std::size_t findChild(std::size_t node, CellStep const &step, Pair const (&toCoords)[2]);
-    void addEdges(std::vector<LeafPlaces::Place> const &places);
 
     int const _faceSize;
     std::vector<Node> _nodes;

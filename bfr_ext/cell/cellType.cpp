@@ -20,9 +20,6 @@ namespace {
 
 using Vector = std::vector<double>;
 
-// The kind of a whole border, where those of its items are their numbers.
-constexpr int kLatticeBorder = -1;
-
 // Appends a number in as many bytes as it takes, small ones, of either sign, in one.
 void addNumber(int number, std::string &key) {
     auto rest = (std::uint32_t(number) << 1) ^ std::uint32_t(number < 0 ? -1 : 0);
@@ -123,7 +120,11 @@ struct Projection {
 
 CellType::CellType(CellTypes &types, CellPatch cell, CellRules const &rules)
     : _types(types), _cell(std::move(cell)), _numPoints(int(_cell.patch.sources.size())),
-      _isInLattice(isInLattice(_cell.patch)), _isSharp(isSharp(_cell.patch)), _rules(rules) {}
+      _isInLattice(isInLattice(_cell.patch)), _isSharp(isSharp(_cell.patch)), _rules(rules) {
+    if (_isInLattice && IsWhole()) {
+        _foundItems = std::make_unique<FoundItems>();
+    }
+}
 
 std::vector<CellType::Child> const &CellType::GetChildren() const {
     std::call_once(_onceChildren, [&] {
@@ -313,50 +314,32 @@ CellType::BorderItem const &CellType::GetBorderItem(int const *turns, std::size_
     auto const get = [&](std::size_t i, auto const &make) -> BorderItem const & {
         return _borderItems.Get<BorderItem>(int(i), turns + i, turns + i + 1, make);
     };
-    return get(item, [&] {
-        // The others are asked for, too.
-        std::vector<CellPatch> patches = GatherBorder(_cell, turns, _rules.sdcOptions);
-        std::size_t const numEdges = patches.size() / 2;
-        std::vector<BorderItem> items;
-        for (std::size_t i = 0; i < patches.size(); ++i) {
-            std::vector<int> points = patches[i].patch.sources;
-            points.shrink_to_fit();
-            CellType const &type = _types.Find(CellPatch(patches[i]), _rules);
-            RingItem const &rings = RingItem::Get(type, patches[i], _types.GetRingCells(_rules));
-            items.push_back({&type, std::move(points), i < numEdges && turns[i] == 1,
-                             rings.cell ? &rings : nullptr});
-        }
-        for (std::size_t i = 0; i < items.size(); ++i) {
-            if (i != item) {
-                get(i, [&] { return items[i]; });
+    auto const find = [&]() -> BorderItem const & {
+        return get(item, [&] {
+            // The others are asked for, too.
+            std::vector<CellPatch> patches = GatherBorder(_cell, turns, _rules.sdcOptions);
+            std::size_t const numEdges = patches.size() / 2;
+            std::vector<BorderItem> items;
+            for (std::size_t i = 0; i < patches.size(); ++i) {
+                std::vector<int> points = patches[i].patch.sources;
+                points.shrink_to_fit();
+                CellType const &type = _types.Find(CellPatch(patches[i]), _rules);
+                RingItem const &rings =
+                    RingItem::Get(type, patches[i], _types.GetRingCells(_rules));
+                items.push_back({&type, std::move(points), i < numEdges && turns[i] == 1,
+                                 rings.cell ? &rings : nullptr});
             }
-        }
-        return items[item];
-    });
-}
-
-CellType::LatticeBorder const &CellType::GetLatticeBorder() const {
-    return _borderItems.Get<LatticeBorder>(kLatticeBorder, nullptr, nullptr, [&] {
-        auto const numEdges = std::size_t(GetNumCorners());
-        LatticeBorder border;
-        border.items.resize(2 * numEdges);
-        std::vector<int> turns(2 * numEdges);
-        for (std::size_t item = 0; item < 2 * numEdges; ++item) {
-            int const numTurns = item < numEdges ? 2 : GetLatticeValence(GetNumCorners());
-            for (int turn = 0; turn < numTurns; ++turn) {
-                turns[item] = turn;
-                border.items[item].push_back(&GetBorderItem(turns.data(), item));
+            for (std::size_t i = 0; i < items.size(); ++i) {
+                if (i != item) {
+                    get(i, [&] { return items[i]; });
+                }
             }
-        }
-        border.isAlike = border.items[0][0]->type->IsInLattice();
-        for (std::size_t item = 0; item < 2 * numEdges; ++item) {
-            CellType const *const type = border.items[item < numEdges ? 0 : numEdges][0]->type;
-            border.isAlike = border.isAlike &&
-                             std::all_of(border.items[item].begin(), border.items[item].end(),
-                                         [&](BorderItem const *of) { return of->type == type; });
-        }
-        return border;
-    });
+            return items[item];
+        });
+    };
+    return _foundItems ? _foundItems->Get<BorderItem>(
+                             item * kMaxLatticeValence + std::size_t(turns[item]), find)
+                       : find();
 }
 
 std::vector<double> CellType::FindPatchPoints(PatchAges const &ages) const {

@@ -70,6 +70,7 @@ public:
     static constexpr int GetLatticeValence(int faceSize) {
         return faceSize == 3 ? 6 : faceSize == 4 ? 4 : faceSize == 6 ? 3 : 0;
     }
+    static constexpr std::size_t kMaxLatticeFaceSize = 6;
     /// Whether the surface has bounded curvature where the lattice is regular.
     bool HasBoundedCurvature() const {
         return _rules.schemeOptions.faceMask != FarExt::FaceMask::Average &&
@@ -127,16 +128,6 @@ public:
     ///
     /// \param turns  those of FindBaseCellTurns()
     BorderItem const &GetBorderItem(int const *turns, std::size_t item) const;
-    /// \brief All of them, of a face in a lattice: by edge, and behind these by vertex, what the turns
-    /// 0, 1 and so on make of it.
-    struct LatticeBorder {
-        std::vector<std::vector<BorderItem const *>> items;
-        /// Whether all edges are of one type, in a lattice themselves, and all vertices of one.  They are not
-        /// where what one of them depends on is cut off by a boundary, or has a vertex twice, as around a
-        /// tube of few vertices.
-        bool isAlike;
-    };
-    LatticeBorder const &GetLatticeBorder() const;
     /// \brief The points of the Gregory patches of a cell, as FarExt::internal::FindCellPatchPoints() has them;
     /// not numbers where it has no limit at a corner.
     std::vector<double> FindPatchPoints(FarExt::internal::PatchAges const &ages) const;
@@ -173,6 +164,9 @@ private:
     mutable std::once_flag _onceCorners;
     mutable std::vector<Corner> _corners;
     mutable PatternTable _borderItems;
+    static constexpr std::size_t kMaxLatticeValence = 6;
+    using FoundItems = FoundPatterns<2 * kMaxLatticeFaceSize * kMaxLatticeValence>;
+    std::unique_ptr<FoundItems> _foundItems; // of faces in lattices, by item and turn
     mutable PatternTable _patterns;
 };
 

@@ -16,15 +16,9 @@ constexpr double kFactor = 1.125;
 
 // The plane through the first corner with the mean normal of all.
 Flatness::Plane Flatness::findPlane(std::vector<double> const &corners) {
-    Vector3 const origin = ToVector3(corners.data());
-    Vector3 area = {};
-    for (std::size_t i = 3; i + 3 < corners.size(); i += 3) {
-        Vector3 const part = Cross(Subtract(ToVector3(&corners[i]), origin),
-                                   Subtract(ToVector3(&corners[i + 3]), origin));
-        area = Subtract(area, Scale(part, -1));
-    }
+    Vector3 const area = FindArea(corners);
     double const length = GetLength(area);
-    return {origin, length > 0 ? Scale(area, 1 / length) : Vector3{0, 0, 1}};
+    return {ToVector3(corners.data()), length > 0 ? Scale(area, 1 / length) : Vector3{0, 0, 1}};
 }
 
 void Flatness::add(double height) {

@@ -15,25 +15,6 @@ struct Leaf {
     CellType const &type;
     RingCell const *ringCell;
     LeafPlaces const &places;
-    // Of a half cell with what is inside of its long edge; null: without.
-    HalfWithEdge const *withEdge = nullptr;
-    bool isReversed = false; // the long edge
-
-    // Whether it is the long edge that has a place.
-    bool IsInEdge(LeafPlaces::Place const &place) const {
-        return withEdge && place.coords[1] == 0 && place.coords[0] != 0 && place.coords[0] != 1;
-    }
-    // Its weights of the place, by column of both.  What they make is, to the bit, what BorderEvaluator makes: zeros
-    // change no sum of numbers that are finite.
-    std::vector<double> FindInEdge(LeafPlaces::Place const &place) const {
-        RingCell const &longEdge = *withEdge->longEdge;
-        BorderStencil stencil;
-        stencil.Find(longEdge.GetType(), isReversed ? 1 - place.coords[0] : place.coords[0],
-                     longEdge.IsInner() ? StencilOf::Step : StencilOf::Points);
-        std::vector<double> ordered;
-        longEdge.GetPlaces().Order(stencil.GetWeights(), ordered);
-        return withEdge->places.Spread(longEdge.GetPlaces(), ordered);
-    }
 
     // What is a sum of the points of the type, as one of those of the rings.
     std::vector<double> const &Order(std::vector<double> const &weights,
@@ -42,9 +23,6 @@ struct Leaf {
             return weights;
         }
         ringCell->GetPlaces().Order(weights, scratch);
-        if (withEdge) {
-            scratch = withEdge->places.Spread(ringCell->GetPlaces(), scratch);
-        }
         return scratch;
     }
 
@@ -52,9 +30,6 @@ struct Leaf {
         return ringCell && ringCell->IsInner() ? StencilOf::Step : StencilOf::Points;
     }
     std::size_t GetNumPoints() const {
-        if (withEdge) {
-            return withEdge->places.GetColumns().size();
-        }
         return ringCell ? ringCell->GetColumns().size() : std::size_t(type.GetNumPoints());
     }
 };
@@ -62,42 +37,9 @@ struct Leaf {
 // Weights of some places, by point.
 using Rows = std::vector<std::vector<double>>;
 
-// What a leaf is evaluated with.  Points that weigh the same at all of its places are one column of the matrices,
-// that of their sum: whole triangles behind a first step by FaceMask::Average have 21 columns, and not some 50,
-// however many faces meet at the vertices (benchmark surfaces, irregular and spot: derivatives 1.08 times as fast).
+// What a leaf is evaluated with.
 template <typename REAL, std::size_t COUNT>
-struct LeafMatrices {
-    struct Addend {
-        int column;
-        int point;
-    };
-
-    bool HasSums() const { return !firsts.empty(); }
-
-    std::vector<int> firsts;     // by column, one of its points; none where columns are points
-    std::vector<Addend> addends; // the others
-    std::array<PlaceMatrix<REAL>, COUNT> matrices;
-};
-
-// Finds, by column, points that have the same weights, but for rounding.
-std::vector<std::vector<int>> findColumns(Rows const &rows) {
-    constexpr double kTolerance = 1e-12;
-    std::vector<std::vector<int>> columns;
-    for (int point = 0; point < int(rows[0].size()); ++point) {
-        auto const column = std::find_if(columns.begin(), columns.end(), [&](auto const &points) {
-            auto const first = std::size_t(points[0]);
-            return std::all_of(rows.begin(), rows.end(), [&](std::vector<double> const &row) {
-                return std::abs(row[std::size_t(point)] - row[first]) <= kTolerance;
-            });
-        });
-        if (column == columns.end()) {
-            columns.push_back({point});
-        } else {
-            column->push_back(point);
-        }
-    }
-    return columns;
-}
+using LeafMatrices = std::array<PlaceMatrix<REAL>, COUNT>;
 
 // Makes matrices of a leaf, the rows of which find(stencil, place) finds, and getRow(stencil, i) gives.
 template <typename REAL, std::size_t COUNT, typename FIND, typename GET>
@@ -106,41 +48,15 @@ LeafMatrices<REAL, COUNT> makeMatrices(Leaf const &leaf, FIND const &find, GET c
     Rows rows(leaf.places.GetSize() * COUNT);
     std::vector<double> scratch;
     for (std::size_t row = 0; row < leaf.places.GetSize(); ++row) {
-        if (leaf.IsInEdge(leaf.places[row])) {
-            rows[row * COUNT] = leaf.FindInEdge(leaf.places[row]);
-            continue;
-        }
         find(stencil, leaf.places[row]);
         for (std::size_t i = 0; i < COUNT; ++i) {
             rows[row * COUNT + i] = leaf.Order(getRow(stencil, i), scratch);
         }
     }
     LeafMatrices<REAL, COUNT> result;
-    // The sums of an edge are the same in all faces, and so have a column for each point.
-    std::vector<std::vector<int>> const columns =
-        leaf.withEdge ? std::vector<std::vector<int>>() : findColumns(rows);
-    // Adding points up takes time, too.
-    if (!leaf.withEdge && 2 * columns.size() <= leaf.GetNumPoints()) {
-        for (std::vector<int> const &points : columns) {
-            result.firsts.push_back(points[0]);
-        }
-        for (std::vector<double> &row : rows) {
-            std::transform(result.firsts.begin(), result.firsts.end(), row.begin(),
-                           [&](int point) { return row[std::size_t(point)]; });
-            row.resize(columns.size());
-        }
-        // Column by column in turn, so that sums do not wait for themselves.
-        for (std::size_t i = 1; i < leaf.GetNumPoints(); ++i) {
-            for (std::size_t column = 0; column < columns.size(); ++column) {
-                if (i < columns[column].size()) {
-                    result.addends.push_back({int(column), columns[column][i]});
-                }
-            }
-        }
-    }
-    result.matrices.fill(PlaceMatrix<REAL>(leaf.places.GetSize(), rows[0].size()));
+    result.fill(PlaceMatrix<REAL>(leaf.places.GetSize(), rows[0].size()));
     for (std::size_t row = 0; row < rows.size(); ++row) {
-        result.matrices[row % COUNT].Set(row / COUNT, rows[row]);
+        result[row % COUNT].Set(row / COUNT, rows[row]);
     }
     return result;
 }
@@ -173,28 +89,6 @@ LeafMatrices<REAL, 1> const &getPointMatrices(Leaf const &leaf) {
         [](CellStencil const &stencil, std::size_t) -> std::vector<double> const & {
             return stencil.GetWeights();
         });
-}
-
-// Writes the sums of the points of columns.
-template <std::size_t PADDED_SIZE, typename REAL, std::size_t COUNT>
-void addUpPoints(LeafMatrices<REAL, COUNT> const &leaf, REAL const *points, std::size_t paddedSize,
-                 int const *indices, REAL *sums) {
-    std::size_t const stride = PADDED_SIZE == 0 ? paddedSize : PADDED_SIZE;
-    for (std::size_t first = 0; first < stride; first += Lanes<REAL>::kCount) {
-        auto const load = [&](int point) {
-            auto const place = std::size_t(indices ? indices[point] : point);
-            return Lanes<REAL>::Load(points + place * stride + first);
-        };
-        REAL *to = sums + first;
-        for (int const point : leaf.firsts) {
-            load(point).Store(to);
-            to += stride;
-        }
-        for (auto const &addend : leaf.addends) {
-            REAL *const sum = sums + std::size_t(addend.column) * stride + first;
-            (Lanes<REAL>::Load(sum) + load(addend.point)).Store(sum);
-        }
-    }
 }
 
 // Two places: derivatives, of which getRow(k) gives the rows as of the type.
@@ -263,6 +157,12 @@ void PatchEvaluator<REAL>::evaluate(CellType const &type, CellPlan const &plan, 
                                     REAL const *controlPoints, std::ptrdiff_t stride) {
     _size = std::size_t(size);
     _paddedSize = StepMatrix::GetPaddedSize(_size);
+    if (plan[0].leaf) {
+        if (!plan[0].runs.empty()) {
+            evaluateLeaf(type, nullptr, plan[0], controlPoints, stride, nullptr);
+        }
+        return;
+    }
     auto const numPoints = std::size_t(type.GetNumPoints());
     std::vector<REAL> &points = getPoints(0, numPoints);
     for (std::size_t i = 0; i < numPoints; ++i) {
@@ -297,7 +197,8 @@ void PatchEvaluator<REAL>::descendToChildren(CellType const &type, CellPlan cons
         std::vector<REAL> &childPoints = getPoints(2 * depth + 2, link.step.GetNumRows());
         link.step.CopyPoints(points.data(), _paddedSize, childPoints.data());
         if (child.leaf) {
-            evaluateLeaf(*link.type, nullptr, child, childPoints.data(), nullptr);
+            evaluateLeaf(*link.type, nullptr, child, childPoints.data(),
+                         std::ptrdiff_t(_paddedSize), nullptr);
         } else {
             descend(*link.type, plan, next, depth + 1);
         }
@@ -305,11 +206,9 @@ void PatchEvaluator<REAL>::descendToChildren(CellType const &type, CellPlan cons
 }
 
 template <typename REAL>
-void PatchEvaluator<REAL>::Evaluate(PlainFaceType const &type, int const *turns,
-                                    RingValues<REAL> const &values, CellPlan const &plan,
-                                    REAL *results, std::ptrdiff_t resultStride) {
-    _turns = turns;
-    _hasEdge.assign(type.GetRings().GetRings().GetRings().size(), false);
+void PatchEvaluator<REAL>::Evaluate(PlainFaceType const &type, RingValues<REAL> const &values,
+                                    CellPlan const &plan, REAL *results,
+                                    std::ptrdiff_t resultStride) {
     _results = results;
     _resultStride = resultStride;
     evaluate(type, values, plan);
@@ -335,15 +234,13 @@ void PatchEvaluator<REAL>::evaluate(PlainFaceType const &type, RingValues<REAL> 
     evaluateCorners(face, plan[0], values.GetPoints());
     for (std::size_t const next : plan[0].children) {
         CellPlan::Node const &child = plan[next];
-        if (evaluateHalf(face, child, values.GetPoints())) {
-            continue;
-        }
         RingCell const &cell = face.GetChild(child.child);
         std::vector<int> const &columns = cell.GetColumns();
         _indices.resize(columns.size());
         face.FindChildIndices(child.child, _indices.data());
         if (child.leaf) {
-            evaluateLeaf(cell.GetType(), &cell, child, values.GetPoints(), _indices.data());
+            evaluateLeaf(cell.GetType(), &cell, child, values.GetPoints(),
+                         std::ptrdiff_t(_paddedSize), _indices.data());
             continue;
         }
         if (cell.IsInner()) {
@@ -362,60 +259,17 @@ void PatchEvaluator<REAL>::evaluate(PlainFaceType const &type, RingValues<REAL> 
     }
 }
 
-// Evaluates a leaf that is a half cell beside an edge, with the points inside of the edge, if the leaf has all of them;
-// false if it is something else.  One matrix for both takes less time than two (benchmark surfaces, irregular and spot,
-// 1.05 to 1.1 times as fast).
-template <typename REAL>
-bool PatchEvaluator<REAL>::evaluateHalf(FaceRings const &face, CellPlan::Node const &leaf,
-                                        REAL const *points) {
-    if (!_results || !leaf.leaf || leaf.isWhole) {
-        return false;
-    }
-    int const edge = int(leaf.child) - 1;
-    bool const isReversed = _turns[edge] == 1;
-    HalfWithEdge const *const half = face.GetHalfWithEdge(edge, isReversed);
-    if (!half) {
-        return false;
-    }
-    bool const hasEdge = !leaf.runsWithEdge.empty();
-    std::vector<PlaceRun> const &runs = hasEdge ? leaf.runsWithEdge : leaf.runs;
-    _hasEdge[std::size_t(edge)] = hasEdge;
-    _indices.resize(half->places.GetColumns().size());
-    face.FindHalfIndices(edge, isReversed, _indices.data());
-    Leaf const ofLeaf = {half->half->GetType(), half->half.get(), *leaf.leaf, half, isReversed};
-    SumUpPlaces(getPointMatrices<REAL>(ofLeaf).matrices[0],
-                {points, std::ptrdiff_t(_paddedSize), _size, _indices.data(), _results,
-                 _resultStride, runs.data(), runs.size()});
-    return true;
-}
-
 // The points are those of the type, or of the rings that it is told as a cell of.
 template <typename REAL>
 void PatchEvaluator<REAL>::evaluateLeaf(CellType const &type, RingCell const *ringCell,
                                         CellPlan::Node const &leaf, REAL const *points,
-                                        int const *indices) {
+                                        std::ptrdiff_t stride, int const *indices) {
     assert(!leaf.runs.empty()); // none would stand for all
     Leaf const ofLeaf = {type, ringCell, *leaf.leaf};
-    // Takes the sums of the columns, where there are such, in place of the points.
-    auto const addUp = [&](auto const &matrices) {
-        if (!matrices.HasSums()) {
-            return;
-        }
-        _sums.resize(std::max(_sums.size(), matrices.firsts.size() * _paddedSize));
-        if (_paddedSize == StepMatrix::kPadding) {
-            addUpPoints<StepMatrix::kPadding>(matrices, points, _paddedSize, indices, _sums.data());
-        } else {
-            addUpPoints<0>(matrices, points, _paddedSize, indices, _sums.data());
-        }
-        points = _sums.data();
-        indices = nullptr;
-    };
     if (_results) {
-        LeafMatrices<REAL, 1> const &matrices = getPointMatrices<REAL>(ofLeaf);
-        addUp(matrices);
-        SumUpPlaces(matrices.matrices[0],
-                    {points, std::ptrdiff_t(_paddedSize), _size, indices, _results, _resultStride,
-                     leaf.runs.data(), leaf.runs.size()});
+        SumUpPlaces(getPointMatrices<REAL>(ofLeaf)[0],
+                    {points, stride, _size, indices, _results, _resultStride, leaf.runs.data(),
+                     leaf.runs.size()});
         return;
     }
     auto const &matrices = getMatrices<REAL, 2>(
@@ -429,20 +283,33 @@ void PatchEvaluator<REAL>::evaluateLeaf(CellType const &type, RingCell const *ri
         [](CellStencil const &stencil, std::size_t i) -> std::vector<double> const & {
             return i == 0 ? stencil.GetDuWeights() : stencil.GetDvWeights();
         });
-    addUp(matrices);
-    DerivativeSums<REAL> sums = {points,
-                                 std::ptrdiff_t(_paddedSize),
-                                 _size,
-                                 indices,
-                                 {},
-                                 {_derivatives[0], _derivatives[1]},
-                                 _resultStride,
-                                 leaf.runs.data(),
-                                 leaf.runs.size()};
     for (std::size_t i = 0; i < 2; ++i) {
-        std::copy_n(leaf.toCoords[i].begin(), 2, sums.factors[i]);
+        SumUpPlaces(matrices[i], {points, stride, _size, indices, _derivatives[i], _resultStride,
+                                  leaf.runs.data(), leaf.runs.size()});
     }
-    SumUpPlaces(matrices.matrices, sums);
+    turnDerivatives(leaf);
+}
+
+// Those by the coordinates of a leaf become those by u and v.
+template <typename REAL>
+void PatchEvaluator<REAL>::turnDerivatives(CellPlan::Node const &leaf) const {
+    auto const &[first, second] = leaf.toCoords;
+    if (first == Pair{1, 0} && second == Pair{0, 1}) {
+        return;
+    }
+    REAL const factors[2][2] = {{REAL(first[0]), REAL(second[0])},
+                                {REAL(first[1]), REAL(second[1])}};
+    for (PlaceRun const &run : leaf.runs) {
+        std::ptrdiff_t place = std::ptrdiff_t(run.place) * _resultStride;
+        for (int i = 0; i < run.count; ++i, place += _resultStride) {
+            for (std::ptrdiff_t k = place; k < place + std::ptrdiff_t(_size); ++k) {
+                REAL const along = _derivatives[0][k];
+                REAL const across = _derivatives[1][k];
+                _derivatives[0][k] = factors[0][0] * along + factors[0][1] * across;
+                _derivatives[1][k] = factors[1][0] * along + factors[1][1] * across;
+            }
+        }
+    }
 }
 
 template <typename REAL>

@@ -33,13 +33,8 @@ public:
     /// @name The same of plain faces, from the points of their rings
     /// @{
 
-    /// \brief Writes points inside of edges of the face, too, where its half cells have them (HasEdge()).
-    ///
-    /// \param turns  those of FindBaseCellTurns()
-    void Evaluate(PlainFaceType const &type, int const *turns, RingValues<REAL> const &values,
-                  CellPlan const &plan, REAL *results, std::ptrdiff_t resultStride);
-    /// Whether all points inside of an edge were made with the last points of the face.
-    bool HasEdge(std::size_t edge) const { return _hasEdge[edge]; }
+    void Evaluate(PlainFaceType const &type, RingValues<REAL> const &values, CellPlan const &plan,
+                  REAL *results, std::ptrdiff_t resultStride);
     void EvaluateDerivatives(PlainFaceType const &type, RingValues<REAL> const &values,
                              CellPlan const &plan, REAL *du, REAL *dv, std::ptrdiff_t resultStride);
     /// @}
@@ -48,12 +43,12 @@ private:
     void evaluate(CellType const &type, CellPlan const &plan, int size, REAL const *controlPoints,
                   std::ptrdiff_t stride);
     void evaluate(PlainFaceType const &type, RingValues<REAL> const &values, CellPlan const &plan);
-    bool evaluateHalf(FaceRings const &face, CellPlan::Node const &leaf, REAL const *points);
     void descend(CellType const &type, CellPlan const &plan, std::size_t node, std::size_t depth);
     void descendToChildren(CellType const &type, CellPlan const &plan, std::size_t node,
                            std::size_t depth);
     void evaluateLeaf(CellType const &type, RingCell const *ringCell, CellPlan::Node const &leaf,
-                      REAL const *points, int const *indices);
+                      REAL const *points, std::ptrdiff_t stride, int const *indices);
+    void turnDerivatives(CellPlan::Node const &leaf) const;
     void evaluateCorners(CellType const &type, CellPlan::Node const &cell, REAL const *points);
     void evaluateCorners(FaceRings const &face, CellPlan::Node const &cell, REAL const *points);
     void evaluateCorners(RingCell const &child, CellPlan::Node const &cell, REAL const *points);
@@ -65,10 +60,7 @@ private:
     std::size_t _paddedSize = 0;
     std::deque<std::vector<REAL>> _points; // by depth, of a cell and of its children
     std::vector<int> _indices;
-    std::vector<REAL> _sums;     // of points of a leaf that weigh the same
-    std::vector<REAL> _along;    // derivatives at a corner, by two coordinates
-    int const *_turns = nullptr; // of the plain face
-    std::vector<bool> _hasEdge;
+    std::vector<REAL> _along; // derivatives at a corner, by two coordinates
     REAL *_results = nullptr; // points
     REAL *_derivatives[2] = {};
     std::ptrdiff_t _resultStride = 0;

@@ -15,13 +15,10 @@ namespace OpenSubdivHex::BfrExt::internal {
 
 /// What a PatternTable of a type of cells has: one kind for each precision of a PatternOf.
 enum class PatternOf {
-    Face,
-    FaceDerivatives,
     Border,
     BorderPlace,
     BorderRate,
     Rates,
-    RatesWithEdge,
     RateDerivatives,
     RateDerivativesOnEdge,
     Leaf,
@@ -35,7 +32,6 @@ enum class PatternOf {
     RingCell,
     RingItem,
     SurfaceSamples,
-    SlopeBounds,
     SecondDerivatives,
     PatchPoints
 };

@@ -3,15 +3,11 @@
 #define OPENSUBDIVHEX_BFR_EXT_CELL_PLACE_KERNEL_H
 
 #include <algorithm>
-#include <array>
 #include <cstddef>
 #include <new>
 #include <vector>
 
 namespace OpenSubdivHex::BfrExt::internal {
-
-template <typename REAL>
-class MirrorMatrix;
 
 /// Memory that begins where a register of any machine may: those that lie across two lines of the cache
 /// would be read in twice the time.
@@ -89,10 +85,13 @@ private:
 /// \brief Points, and where the weighted sums of them go that a matrix makes.
 ///
 /// Each number of the result is a sum of its own, over the points in their order: so it does not depend on what is
-/// computed beside it.  All kernels for machines that fuse products with sums do so, and give the same bits; the
+/// computed beside it.  Blocks of one register of the widest machine have kNumNarrowSums sums for each number, of the
+/// points in turn, which do not wait for each other.  All kernels for machines that fuse products with sums do so, and give the same bits; the
 /// portable one, for machines that may not, gives its own.
 template <typename REAL>
 struct PlaceSums {
+    static constexpr std::size_t kNumNarrowSums = 4;
+
     REAL const *points;
     std::ptrdiff_t stride; ///< from one point to the next, in numbers
     std::size_t size;      ///< of a point
@@ -104,94 +103,19 @@ struct PlaceSums {
     std::size_t numRuns = 0;
 };
 
-/// \brief Points, and where derivatives by u and v go, of which two matrices make what they are by other
-/// coordinates.
-///
-/// Each number of these is the same sum as that of PlaceSums.
-template <typename REAL>
-struct DerivativeSums {
-    REAL const *points;
-    std::ptrdiff_t stride; ///< from one point to the next, in numbers
-    std::size_t size;      ///< of a point
-    int const *indices;    ///< which points the columns of the matrices have, or null: all in turn
-    REAL factors[2][2];    ///< by matrix, and then of the derivative by u and by v
-    REAL *results[2];      ///< by u and by v
-    std::ptrdiff_t resultStride;
-    PlaceRun const *runs; ///< as those of PlaceSums
-    std::size_t numRuns;
-};
-
-/// \brief Points, and where the weighted sums of several choices of them go that one matrix makes.
-///
-/// Each number is the same sum as that of PlaceSums.
-template <typename REAL>
-struct ItemSums {
-    struct Item {
-        int const *indices; ///< which points the columns of the matrix have
-        REAL *results;
-        std::ptrdiff_t resultStride;
-    };
-
-    REAL const *points;
-    std::ptrdiff_t stride; ///< from one point to the next, in numbers
-    std::size_t size;      ///< of a point
-    Item const *items;
-    std::size_t numItems;
-};
-
 /// Forms the sums with the widest registers that the machine has.
 void SumUpPlaces(PlaceMatrix<float> const &matrix, PlaceSums<float> const &sums);
 /// \copydoc SumUpPlaces(PlaceMatrix<float> const &, PlaceSums<float> const &)
 void SumUpPlaces(PlaceMatrix<double> const &matrix, PlaceSums<double> const &sums);
-/// The same of all places, without indices.
-void SumUpPlaces(MirrorMatrix<float> const &matrix, PlaceSums<float> const &sums);
-/// \copydoc SumUpPlaces(MirrorMatrix<float> const &, PlaceSums<float> const &)
-void SumUpPlaces(MirrorMatrix<double> const &matrix, PlaceSums<double> const &sums);
-
-/// Forms derivatives with matrices of the same places.
-void SumUpPlaces(std::array<PlaceMatrix<float>, 2> const &matrices,
-                 DerivativeSums<float> const &sums);
-/// \copydoc SumUpPlaces(std::array<PlaceMatrix<float>, 2> const &, DerivativeSums<float> const &)
-void SumUpPlaces(std::array<PlaceMatrix<double>, 2> const &matrices,
-                 DerivativeSums<double> const &sums);
-
-/// The same of several items.
-void SumUpPlaces(PlaceMatrix<float> const &matrix, ItemSums<float> const &sums);
-/// \copydoc SumUpPlaces(PlaceMatrix<float> const &, ItemSums<float> const &)
-void SumUpPlaces(PlaceMatrix<double> const &matrix, ItemSums<double> const &sums);
 
 /// @name The same with some instructions, which the machine must have
 /// @{
 void SumUpPlacesPortable(PlaceMatrix<float> const &matrix, PlaceSums<float> const &sums);
 void SumUpPlacesPortable(PlaceMatrix<double> const &matrix, PlaceSums<double> const &sums);
-void SumUpPlacesPortable(MirrorMatrix<float> const &matrix, PlaceSums<float> const &sums);
-void SumUpPlacesPortable(MirrorMatrix<double> const &matrix, PlaceSums<double> const &sums);
-void SumUpPlacesPortable(std::array<PlaceMatrix<float>, 2> const &matrices,
-                         DerivativeSums<float> const &sums);
-void SumUpPlacesPortable(std::array<PlaceMatrix<double>, 2> const &matrices,
-                         DerivativeSums<double> const &sums);
-void SumUpPlacesPortable(PlaceMatrix<float> const &matrix, ItemSums<float> const &sums);
-void SumUpPlacesPortable(PlaceMatrix<double> const &matrix, ItemSums<double> const &sums);
 void SumUpPlacesAvx2(PlaceMatrix<float> const &matrix, PlaceSums<float> const &sums);
 void SumUpPlacesAvx2(PlaceMatrix<double> const &matrix, PlaceSums<double> const &sums);
-void SumUpPlacesAvx2(MirrorMatrix<float> const &matrix, PlaceSums<float> const &sums);
-void SumUpPlacesAvx2(MirrorMatrix<double> const &matrix, PlaceSums<double> const &sums);
-void SumUpPlacesAvx2(std::array<PlaceMatrix<float>, 2> const &matrices,
-                     DerivativeSums<float> const &sums);
-void SumUpPlacesAvx2(std::array<PlaceMatrix<double>, 2> const &matrices,
-                     DerivativeSums<double> const &sums);
-void SumUpPlacesAvx2(PlaceMatrix<float> const &matrix, ItemSums<float> const &sums);
-void SumUpPlacesAvx2(PlaceMatrix<double> const &matrix, ItemSums<double> const &sums);
 void SumUpPlacesAvx512(PlaceMatrix<float> const &matrix, PlaceSums<float> const &sums);
 void SumUpPlacesAvx512(PlaceMatrix<double> const &matrix, PlaceSums<double> const &sums);
-void SumUpPlacesAvx512(MirrorMatrix<float> const &matrix, PlaceSums<float> const &sums);
-void SumUpPlacesAvx512(MirrorMatrix<double> const &matrix, PlaceSums<double> const &sums);
-void SumUpPlacesAvx512(std::array<PlaceMatrix<float>, 2> const &matrices,
-                       DerivativeSums<float> const &sums);
-void SumUpPlacesAvx512(std::array<PlaceMatrix<double>, 2> const &matrices,
-                       DerivativeSums<double> const &sums);
-void SumUpPlacesAvx512(PlaceMatrix<float> const &matrix, ItemSums<float> const &sums);
-void SumUpPlacesAvx512(PlaceMatrix<double> const &matrix, ItemSums<double> const &sums);
 /// @}
 
 } // namespace OpenSubdivHex::BfrExt::internal

@@ -11,30 +11,4 @@ void SumUpPlacesAvx2(PlaceMatrix<double> const &matrix, PlaceSums<double> const 
     sumUpPlaces<32>(matrix, sums);
 }
 
-void SumUpPlacesAvx2(MirrorMatrix<float> const &matrix, PlaceSums<float> const &sums) {
-    sumUpPlaces<32>(matrix, sums);
-}
-
-void SumUpPlacesAvx2(MirrorMatrix<double> const &matrix, PlaceSums<double> const &sums) {
-    sumUpPlaces<32>(matrix, sums);
-}
-
-void SumUpPlacesAvx2(std::array<PlaceMatrix<float>, 2> const &matrices,
-                     DerivativeSums<float> const &sums) {
-    sumUpPlaces<32>(matrices, sums);
-}
-
-void SumUpPlacesAvx2(std::array<PlaceMatrix<double>, 2> const &matrices,
-                     DerivativeSums<double> const &sums) {
-    sumUpPlaces<32>(matrices, sums);
-}
-
-void SumUpPlacesAvx2(PlaceMatrix<float> const &matrix, ItemSums<float> const &sums) {
-    sumUpPlaces<32>(matrix, sums);
-}
-
-void SumUpPlacesAvx2(PlaceMatrix<double> const &matrix, ItemSums<double> const &sums) {
-    sumUpPlaces<32>(matrix, sums);
-}
-
 } // namespace OpenSubdivHex::BfrExt::internal

@@ -11,30 +11,4 @@ void SumUpPlacesAvx512(PlaceMatrix<double> const &matrix, PlaceSums<double> cons
     sumUpPlaces<64>(matrix, sums);
 }
 
-void SumUpPlacesAvx512(MirrorMatrix<float> const &matrix, PlaceSums<float> const &sums) {
-    sumUpPlaces<64>(matrix, sums);
-}
-
-void SumUpPlacesAvx512(MirrorMatrix<double> const &matrix, PlaceSums<double> const &sums) {
-    sumUpPlaces<64>(matrix, sums);
-}
-
-void SumUpPlacesAvx512(std::array<PlaceMatrix<float>, 2> const &matrices,
-                       DerivativeSums<float> const &sums) {
-    sumUpPlaces<64>(matrices, sums);
-}
-
-void SumUpPlacesAvx512(std::array<PlaceMatrix<double>, 2> const &matrices,
-                       DerivativeSums<double> const &sums) {
-    sumUpPlaces<64>(matrices, sums);
-}
-
-void SumUpPlacesAvx512(PlaceMatrix<float> const &matrix, ItemSums<float> const &sums) {
-    sumUpPlaces<64>(matrix, sums);
-}
-
-void SumUpPlacesAvx512(PlaceMatrix<double> const &matrix, ItemSums<double> const &sums) {
-    sumUpPlaces<64>(matrix, sums);
-}
-
 } // namespace OpenSubdivHex::BfrExt::internal

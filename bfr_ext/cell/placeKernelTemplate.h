@@ -2,7 +2,7 @@
 #ifndef OPENSUBDIVHEX_BFR_EXT_CELL_PLACE_KERNEL_TEMPLATE_H
 #define OPENSUBDIVHEX_BFR_EXT_CELL_PLACE_KERNEL_TEMPLATE_H
 
-#include "mirrorMatrix.h"
+#include "placeKernel.h"
 
 #include <cstring>
 #include <type_traits>
@@ -96,15 +96,14 @@ struct
 #endif
 
 #ifdef OPENSUBDIVHEX_HAS_SHUFFLES
-/// Register OUT of four, in which x, y, z and any number of points alternate, from those of all x, y and
-/// z.
+/// Register OUT of three, in which x, y and z of points alternate, from those of all x, y and z.
 template <std::size_t OUT, typename LANES, std::size_t... I>
 LANES interleave(LANES const &x, LANES const &y, LANES const &z, std::index_sequence<I...>) {
     constexpr std::size_t kSize = sizeof...(I);
     LANES const xy = __builtin_shufflevector(
-        x, y, int((OUT * kSize + I) / 4 + ((OUT * kSize + I) % 4 == 1 ? kSize : 0))...);
+        x, y, int((OUT * kSize + I) / 3 + ((OUT * kSize + I) % 3 == 1 ? kSize : 0))...);
     return __builtin_shufflevector(
-        xy, z, int((OUT * kSize + I) % 4 < 2 ? I : kSize + (OUT * kSize + I) / 4)...);
+        xy, z, int((OUT * kSize + I) % 3 < 2 ? I : kSize + (OUT * kSize + I) / 3)...);
 }
 #endif
 
@@ -148,22 +147,21 @@ public:
         sums += factors * factor;
     }
 
-    /// Stores kSize slots, from those of the components.
-    static void StoreSlots(Lanes const &x, Lanes const &y, Lanes const &z, REAL *to) {
+    /// Stores kSize points, from those of the components.
+    static void StorePoints(Lanes const &x, Lanes const &y, Lanes const &z, REAL *to) {
 #ifdef OPENSUBDIVHEX_HAS_SHUFFLES
         constexpr std::make_index_sequence<kSize> kIndices;
         Store(interleave<0>(x, y, z, kIndices), to);
         Store(interleave<1>(x, y, z, kIndices), to + kSize);
         Store(interleave<2>(x, y, z, kIndices), to + 2 * kSize);
-        Store(interleave<3>(x, y, z, kIndices), to + 3 * kSize);
 #else
         REAL numbers[3][kSize];
         Store(x, numbers[0]);
         Store(y, numbers[1]);
         Store(z, numbers[2]);
-        for (std::size_t i = 0; i < kSize; ++i, to += 4) {
-            for (std::size_t k = 0; k < 4; ++k) {
-                to[k] = numbers[k < 3 ? k : 2][i];
+        for (std::size_t i = 0; i < kSize; ++i) {
+            for (std::size_t k = 0; k < 3; ++k) {
+                *to++ = numbers[k][i];
             }
         }
 #endif
@@ -172,13 +170,13 @@ public:
     /// The numbers of the places of a block, component by component.
     using Numbers = REAL[3][PlaceMatrix<REAL>::kMaxWidth];
 
-    /// The same place by place, of three components and one of no matter.
-    using Slots = REAL[PlaceMatrix<REAL>::kMaxWidth][4];
+    /// The same place by place, of three components.
+    using Points = REAL[PlaceMatrix<REAL>::kMaxWidth][3];
 
     /// \param begin   the first place of the block
     /// \param count   places of the block that are wanted, the first ones
     /// \param points  as those of PlaceSums, from the first component on that is wanted
-    /// \param result  Numbers, or Slots of three components
+    /// \param result  Numbers, or Points of three components
     template <std::size_t NUM_COMPONENTS, bool HAS_INDICES, typename RESULT>
     static void Form(PlaceMatrix<REAL> const &matrix, std::size_t begin, std::size_t count,
                      REAL const *points, std::ptrdiff_t stride, int const *indices,
@@ -186,25 +184,14 @@ public:
         TileSums const tiles{matrix.GetNumPoints(), matrix.GetWidth(begin), points, stride,
                              indices};
         REAL const *const weights = matrix.GetBlock(begin);
+        if (tiles.width == PlaceMatrix<REAL>::kLanes) {
+            for (std::size_t first = 0; first < count; first += kSize) {
+                tiles.template formNarrow<NUM_COMPONENTS, HAS_INDICES>(weights, first, result);
+            }
+            return;
+        }
         forTiles<kMaxTile>(0, count, [&](auto numLanes, std::size_t first) {
             tiles.template form<numLanes(), NUM_COMPONENTS, HAS_INDICES>(weights, first, result);
-        });
-    }
-
-    /// \brief The same of derivatives, of which two matrices make what DerivativeSums joins.
-    ///
-    /// \param results  Numbers or Slots, by u and by v
-    template <std::size_t NUM_COMPONENTS, bool HAS_INDICES, typename RESULT>
-    static void FormDerivatives(std::array<PlaceMatrix<REAL>, 2> const &matrices, std::size_t begin,
-                                std::size_t count, DerivativeSums<REAL> const &sums,
-                                std::size_t component, RESULT (&results)[2]) {
-        TileSums const tiles{matrices[0].GetNumPoints(), matrices[0].GetWidth(begin),
-                             sums.points + component, sums.stride, sums.indices};
-        REAL const *const weights[2] = {matrices[0].GetBlock(begin), matrices[1].GetBlock(begin)};
-        // The sums of two matrices are in registers.
-        forTiles<kMaxTile / 2>(0, count, [&](auto numLanes, std::size_t first) {
-            tiles.template formDerivatives<numLanes(), NUM_COMPONENTS, HAS_INDICES>(
-                weights, first, sums.factors, results);
         });
     }
 
@@ -234,7 +221,8 @@ private:
     /// NUM_LANES registers of places, from the first on, of each component.
     template <std::size_t NUM_LANES, std::size_t NUM_COMPONENTS, bool HAS_INDICES, typename RESULT>
     void form(REAL const *weights, std::size_t first, RESULT &result) const {
-        Lanes sums[NUM_LANES][NUM_COMPONENTS] = {};
+        Lanes sums[NUM_LANES][NUM_COMPONENTS];
+        setZero(sums);
         weights += first;
         for (std::size_t i = 0; i < numPoints; ++i) {
             auto const place = std::ptrdiff_t(HAS_INDICES ? std::size_t(indices[i]) : i);
@@ -253,33 +241,51 @@ private:
         }
     }
 
-    template <std::size_t NUM_LANES, std::size_t NUM_COMPONENTS, bool HAS_INDICES, typename RESULT>
-    void formDerivatives(REAL const *const (&weights)[2], std::size_t first,
-                         REAL const (&factors)[2][2], RESULT (&results)[2]) const {
-        Lanes sums[NUM_LANES][2][NUM_COMPONENTS] = {};
-        std::size_t place = first;
-        for (std::size_t i = 0; i < numPoints; ++i, place += width) {
-            REAL const *const point =
-                points + std::ptrdiff_t(HAS_INDICES ? std::size_t(indices[i]) : i) * stride;
-            for (std::size_t lane = 0; lane < NUM_LANES; ++lane) {
-                for (std::size_t matrix = 0; matrix < 2; ++matrix) {
-                    Lanes ofLane = Load(weights[matrix] + place + lane * kSize);
-                    keepInRegister(ofLane);
-                    for (std::size_t k = 0; k < NUM_COMPONENTS; ++k) {
-                        AddProducts(sums[lane][matrix][k], ofLane, point[k]);
-                    }
-                }
+    /// One register of places of a narrow block.
+    template <std::size_t NUM_COMPONENTS, bool HAS_INDICES, typename RESULT>
+    void formNarrow(REAL const *weights, std::size_t first, RESULT &result) const {
+        constexpr std::size_t kNumSums = PlaceSums<REAL>::kNumNarrowSums;
+        Lanes sums[kNumSums][NUM_COMPONENTS];
+        setZero(sums);
+        weights += first;
+        auto const add = [&](std::size_t i, Lanes(&to)[NUM_COMPONENTS]) {
+            auto const place = std::ptrdiff_t(HAS_INDICES ? std::size_t(indices[i]) : i);
+            REAL const *const point = points + place * stride;
+            Lanes ofPoint = Load(weights + i * width);
+            keepInRegister(ofPoint);
+            for (std::size_t k = 0; k < NUM_COMPONENTS; ++k) {
+                AddProducts(to[k], ofPoint, point[k]);
+            }
+        };
+        std::size_t i = 0;
+        for (; i + kNumSums <= numPoints; i += kNumSums) {
+            for (std::size_t k = 0; k < kNumSums; ++k) {
+                add(i + k, sums[k]);
             }
         }
-        for (std::size_t lane = 0; lane < NUM_LANES; ++lane) {
-            for (std::size_t i = 0; i < 2; ++i) {
-                Lanes derivatives[NUM_COMPONENTS];
-                for (std::size_t k = 0; k < NUM_COMPONENTS; ++k) {
-                    derivatives[k] =
-                        sums[lane][0][k] * factors[0][i] + sums[lane][1][k] * factors[1][i];
-                }
-                storeSums(derivatives, first + lane * kSize, results[i]);
-            }
+        static_assert(kNumSums == 4);
+        // No loop, in which GCC would keep the sums in memory.
+        if (i < numPoints) {
+            add(i, sums[0]);
+        }
+        if (i + 1 < numPoints) {
+            add(i + 1, sums[1]);
+        }
+        if (i + 2 < numPoints) {
+            add(i + 2, sums[2]);
+        }
+        Lanes total[NUM_COMPONENTS];
+        for (std::size_t k = 0; k < NUM_COMPONENTS; ++k) {
+            total[k] = (sums[0][k] + sums[1][k]) + (sums[2][k] + sums[3][k]);
+        }
+        storeSums(total, first, result);
+    }
+
+    /// GCC would keep an array in memory that is set to 0 as a whole.
+    template <std::size_t NUM, std::size_t NUM_COMPONENTS>
+    static void setZero(Lanes (&sums)[NUM][NUM_COMPONENTS]) {
+        for (auto &some : sums) {
+            std::fill(std::begin(some), std::end(some), Lanes{});
         }
     }
 
@@ -299,8 +305,8 @@ private:
             Store(sums[k], numbers[k] + first);
         }
     }
-    static void storeSums(Lanes const (&sums)[3], std::size_t first, Slots &slots) {
-        StoreSlots(sums[0], sums[1], sums[2], slots[first]);
+    static void storeSums(Lanes const (&sums)[3], std::size_t first, Points &places) {
+        StorePoints(sums[0], sums[1], sums[2], places[first]);
     }
 };
 
@@ -315,18 +321,6 @@ void forComponents(std::size_t numComponents, FUNCTION const &function) {
     for (; component < numComponents; ++component) {
         function(std::integral_constant<std::size_t, 1>(), component);
     }
-}
-
-/// Four numbers in place of which come their sums with the signs that symmetries give: image i has sign -1
-/// in part k where i and k have an odd number of bits in common.
-template <typename NUMBER>
-void mirrorFour(NUMBER (&numbers)[4]) {
-    NUMBER const sums[2] = {numbers[0] + numbers[1], numbers[2] + numbers[3]};
-    NUMBER const differences[2] = {numbers[0] - numbers[1], numbers[2] - numbers[3]};
-    numbers[0] = sums[0] + sums[1];
-    numbers[1] = differences[0] + differences[1];
-    numbers[2] = sums[0] - sums[1];
-    numbers[3] = differences[0] - differences[1];
 }
 
 /// Places of a block of a matrix.
@@ -374,24 +368,19 @@ void forBlockComponents(PlaceMatrix<REAL> const &matrix, SUMS const &sums,
     });
 }
 
-/// Writes points of three numbers from their slots.  Without gaps between points, a fourth number is where the
-/// next point begins, which is written afterwards: one register is stored faster than two parts of it.
+/// Writes points of three numbers.
 template <typename REAL>
-void writeRun(REAL const (*slots)[4], std::size_t count, REAL *results, std::ptrdiff_t stride) {
-    constexpr std::size_t kPoint = 3 * sizeof(REAL);
-    constexpr std::size_t kSlot = 4 * sizeof(REAL);
-    std::size_t i = 0;
+void writeRun(REAL const (*places)[3], std::size_t count, REAL *results, std::ptrdiff_t stride) {
     if (stride == 3) {
-        for (; i + 1 < count; ++i, results += 3) {
-            std::memcpy(results, slots[i], kSlot);
-        }
+        std::memcpy(results, places, count * sizeof(*places));
+        return;
     }
-    for (; i < count; ++i, results += stride) {
-        std::memcpy(results, slots[i], kPoint);
+    for (std::size_t i = 0; i < count; ++i, results += stride) {
+        std::memcpy(results, places[i], sizeof(*places));
     }
 }
 
-/// Writes what is wanted of a block, from TileSums::Slots or TileSums::Numbers.
+/// Writes what is wanted of a block, from TileSums::Points or TileSums::Numbers.
 template <std::size_t NUM_COMPONENTS, typename REAL, typename NUMBERS>
 void writePlaces(PlaceBlock const &block, NUMBERS const &numbers, REAL *results,
                  std::ptrdiff_t stride) {
@@ -444,7 +433,7 @@ private:
                                         _sums.resultStride);
         };
         if constexpr (NUM_COMPONENTS == 3) {
-            form(_slots);
+            form(_places);
         } else {
             form(_numbers);
         }
@@ -453,305 +442,13 @@ private:
     PlaceMatrix<REAL> const &_matrix;
     PlaceSums<REAL> const &_sums;
     typename Tiles::Numbers _numbers;
-    typename Tiles::Slots _slots;
+    typename Tiles::Points _places;
 };
 
-/// The same of derivatives.
-template <std::size_t BYTES, typename REAL>
-class DerivativeBlockSums {
-public:
-    using Matrices = std::array<PlaceMatrix<REAL>, 2>;
-
-    DerivativeBlockSums(Matrices const &matrices, DerivativeSums<REAL> const &sums)
-        : _matrices(matrices), _sums(sums) {}
-
-    void Form() {
-        forBlockComponents(
-            _matrices[0], _sums,
-            [&](auto number, auto hasIndices, std::size_t component, PlaceBlock const &block) {
-                this->template formComponents<number(), hasIndices()>(component, block);
-            });
-    }
-
-private:
-    using Tiles = TileSums<BYTES, REAL>;
-
-    template <std::size_t NUM_COMPONENTS, bool HAS_INDICES>
-    void formComponents(std::size_t component, PlaceBlock const &block) {
-        auto const form = [&](auto &results) {
-            Tiles::template FormDerivatives<NUM_COMPONENTS, HAS_INDICES>(
-                _matrices, block.begin, block.count, _sums, component, results);
-            for (std::size_t i = 0; i < 2; ++i) {
-                writePlaces<NUM_COMPONENTS>(block, results[i], _sums.results[i] + component,
-                                            _sums.resultStride);
-            }
-        };
-        if constexpr (NUM_COMPONENTS == 3) {
-            form(_slots);
-        } else {
-            form(_numbers);
-        }
-    }
-
-    Matrices const &_matrices;
-    DerivativeSums<REAL> const &_sums;
-    typename Tiles::Numbers _numbers[2];
-    typename Tiles::Slots _slots[2];
-};
-
-/// The same of a mirrored matrix.
-template <std::size_t BYTES, typename REAL>
-class MirrorSums {
-public:
-    MirrorSums(MirrorMatrix<REAL> const &matrix, PlaceSums<REAL> const &sums)
-        : _matrix(matrix), _sums(sums) {}
-
-    void Form() {
-        forComponents(_sums.size, [&](auto number, std::size_t component) {
-            this->template formComponents<number()>(component);
-        });
-    }
-
-private:
-    using Tiles = TileSums<BYTES, REAL>;
-    using Lanes = typename Tiles::Lanes;
-    static constexpr std::size_t kMaxWidth = PlaceMatrix<REAL>::kMaxWidth;
-
-    template <std::size_t NUM_COMPONENTS>
-    void formComponents(std::size_t component) {
-        formPoints<NUM_COMPONENTS>(_sums.points + component);
-        auto const &parts = _matrix.GetParts();
-        PlaceMatrix<REAL> const &slots = parts[0].matrix;
-        for (std::size_t begin = 0; begin < slots.GetNumPlaces(); begin += kMaxWidth) {
-            std::size_t const width = slots.GetWidth(begin);
-            for (std::size_t i = 0; i < parts.size(); ++i) {
-                Tiles::template Form<NUM_COMPONENTS, false>(parts[i].matrix, begin, width,
-                                                            _points + 3 * parts[i].firstColumn, 3,
-                                                            nullptr, _numbers[i]);
-            }
-            if (parts.size() == 2) {
-                joinTwo<NUM_COMPONENTS>(width);
-            } else if (parts.size() == 4) {
-                joinFour<NUM_COMPONENTS>(width);
-            }
-            auto const &targets = _matrix.GetTargets(begin / kMaxWidth);
-            if (NUM_COMPONENTS == 3 && _sums.resultStride == 3) {
-                interleaveNumbers(width);
-                writePoints(targets);
-            } else {
-                writeNumbers<NUM_COMPONENTS>(targets, component);
-            }
-        }
-    }
-
-    using Targets = typename MirrorMatrix<REAL>::Targets;
-    using Target = typename MirrorMatrix<REAL>::Target;
-
-    /// Writes points of three numbers without gaps.  A fourth number is where the next point begins, which
-    /// is written afterwards.
-    void writePoints(Targets const &targets) {
-        REAL *const results = _sums.results;
-        for (Target const &target : targets.followed) {
-            std::memcpy(results + 3 * std::ptrdiff_t(target.place), _slots[target.slot],
-                        4 * sizeof(REAL));
-        }
-        for (Target const &target : targets.others) {
-            std::memcpy(results + 3 * std::ptrdiff_t(target.place), _slots[target.slot],
-                        3 * sizeof(REAL));
-        }
-    }
-
-    template <std::size_t NUM_COMPONENTS>
-    void writeNumbers(Targets const &targets, std::size_t component) {
-        REAL *const results = _sums.results + component;
-        for (auto const *some : {&targets.followed, &targets.others}) {
-            for (Target const &target : *some) {
-                auto const slot = std::size_t(target.slot);
-                REAL *const to = results + std::ptrdiff_t(target.place) * _sums.resultStride;
-                for (std::size_t k = 0; k < NUM_COMPONENTS; ++k) {
-                    to[k] = _numbers[slot / kMaxWidth][k][slot % kMaxWidth];
-                }
-            }
-        }
-    }
-
-    /// Copies the numbers of all images to the slots.
-    void interleaveNumbers(std::size_t width) {
-        for (std::size_t image = 0; image < _matrix.GetParts().size(); ++image) {
-            typename Tiles::Numbers const &numbers = _numbers[image];
-            for (std::size_t i = 0; i < width; i += Tiles::kSize) {
-                Tiles::StoreSlots(Tiles::Load(numbers[0] + i), Tiles::Load(numbers[1] + i),
-                                  Tiles::Load(numbers[2] + i), _slots[image * kMaxWidth + i]);
-            }
-        }
-    }
-
-    /// The sums of points that symmetries exchange.
-    template <std::size_t NUM_COMPONENTS>
-    void formPoints(REAL const *points) {
-        for (auto const &orbit : _matrix.GetOrbits()) {
-            auto const getPoint = [&](std::size_t i) {
-                return points + std::ptrdiff_t(orbit.points[i]) * _sums.stride;
-            };
-            auto const getSum = [&](std::size_t i) {
-                return _points + 3 * std::size_t(orbit.columns[i]);
-            };
-            for (std::size_t k = 0; k < NUM_COMPONENTS; ++k) {
-                if (orbit.size == 1) {
-                    getSum(0)[k] = getPoint(0)[k];
-                } else if (orbit.size == 2) {
-                    getSum(0)[k] = getPoint(0)[k] + getPoint(1)[k];
-                    getSum(1)[k] = getPoint(0)[k] - getPoint(1)[k];
-                } else {
-                    REAL numbers[4] = {getPoint(0)[k], getPoint(1)[k], getPoint(2)[k],
-                                       getPoint(3)[k]};
-                    mirrorFour(numbers);
-                    for (std::size_t i = 0; i < 4; ++i) {
-                        getSum(i)[k] = numbers[i];
-                    }
-                }
-            }
-        }
-    }
-
-    /// Of the parts, by parity, the images.
-    template <std::size_t NUM_COMPONENTS>
-    void joinTwo(std::size_t width) {
-        for (std::size_t k = 0; k < NUM_COMPONENTS; ++k) {
-            REAL *const even = _numbers[0][k];
-            REAL *const odd = _numbers[1][k];
-            for (std::size_t i = 0; i < width; i += Tiles::kSize) {
-                Lanes const ofEven = Tiles::Load(even + i);
-                Lanes const ofOdd = Tiles::Load(odd + i);
-                Tiles::Store(ofEven + ofOdd, even + i);
-                Tiles::Store(ofEven - ofOdd, odd + i);
-            }
-        }
-    }
-    template <std::size_t NUM_COMPONENTS>
-    void joinFour(std::size_t width) {
-        for (std::size_t k = 0; k < NUM_COMPONENTS; ++k) {
-            for (std::size_t i = 0; i < width; i += Tiles::kSize) {
-                Lanes ofParts[4] = {
-                    Tiles::Load(_numbers[0][k] + i), Tiles::Load(_numbers[1][k] + i),
-                    Tiles::Load(_numbers[2][k] + i), Tiles::Load(_numbers[3][k] + i)};
-                mirrorFour(ofParts);
-                for (std::size_t image = 0; image < 4; ++image) {
-                    Tiles::Store(ofParts[image], _numbers[image][k] + i);
-                }
-            }
-        }
-    }
-
-    MirrorMatrix<REAL> const &_matrix;
-    PlaceSums<REAL> const &_sums;
-    REAL _points[3 * MirrorMatrix<REAL>::kMaxPoints]; // by column
-    // Of a block, by image: of all places a component, or of each place all components.
-    typename Tiles::Numbers _numbers[MirrorMatrix<REAL>::kMaxImages];
-    REAL _slots[MirrorMatrix<REAL>::kMaxImages * kMaxWidth][4];
-};
-
-/// The same of several items, some at a time, so that their sums keep the machine busy.
-template <std::size_t BYTES, typename REAL>
-class BlockItemSums {
-public:
-    BlockItemSums(PlaceMatrix<REAL> const &matrix, ItemSums<REAL> const &sums)
-        : _matrix(matrix), _sums(sums) {}
-
-    void Form() {
-        forComponents(_sums.size, [&](auto number, std::size_t component) {
-            this->template formComponents<number()>(component);
-        });
-    }
-
-private:
-    using Tiles = TileSums<BYTES, REAL>;
-    using Lanes = typename Tiles::Lanes;
-    static constexpr std::size_t kSize = Tiles::kSize;
-
-    template <std::size_t NUM_COMPONENTS>
-    void formComponents(std::size_t component) {
-        constexpr std::size_t kMaxItems = 4; // whose sums fit in 16 registers
-        std::size_t item = 0;
-        if (_sums.numItems % kMaxItems == 0) {
-            for (; item < _sums.numItems; item += kMaxItems) {
-                formItems<kMaxItems, NUM_COMPONENTS>(item, component);
-            }
-        }
-        for (; item + 3 <= _sums.numItems; item += 3) {
-            formItems<3, NUM_COMPONENTS>(item, component);
-        }
-        for (; item < _sums.numItems; ++item) {
-            formItems<1, NUM_COMPONENTS>(item, component);
-        }
-    }
-
-    template <std::size_t NUM_ITEMS, std::size_t NUM_COMPONENTS>
-    void formItems(std::size_t item, std::size_t component) const {
-        constexpr std::size_t kMaxWidth = PlaceMatrix<REAL>::kMaxWidth;
-        for (std::size_t first = 0; first < _matrix.GetNumPlaces(); first += kSize) {
-            std::size_t const begin = first / kMaxWidth * kMaxWidth;
-            formTile<NUM_ITEMS, NUM_COMPONENTS>(_sums.items + item, component, first,
-                                                _matrix.GetBlock(begin) + (first - begin),
-                                                _matrix.GetWidth(begin));
-        }
-    }
-
-    template <std::size_t NUM_ITEMS, std::size_t NUM_COMPONENTS>
-    void formTile(typename ItemSums<REAL>::Item const *items, std::size_t component,
-                  std::size_t first, REAL const *weights, std::size_t width) const {
-        Lanes sums[NUM_ITEMS][NUM_COMPONENTS] = {};
-        std::size_t const numPoints = _matrix.GetNumPoints();
-        for (std::size_t i = 0; i < numPoints; ++i, weights += width) {
-            Lanes const ofPoint = Tiles::Load(weights);
-            for (std::size_t item = 0; item < NUM_ITEMS; ++item) {
-                REAL const *const point =
-                    _sums.points + component + items[item].indices[i] * _sums.stride;
-                for (std::size_t k = 0; k < NUM_COMPONENTS; ++k) {
-                    Tiles::AddProducts(sums[item][k], ofPoint, point[k]);
-                }
-            }
-        }
-        REAL numbers[NUM_ITEMS][NUM_COMPONENTS][kSize];
-        for (std::size_t item = 0; item < NUM_ITEMS; ++item) {
-            for (std::size_t k = 0; k < NUM_COMPONENTS; ++k) {
-                Tiles::Store(sums[item][k], numbers[item][k]);
-            }
-        }
-        std::size_t const count = std::min(kSize, _matrix.GetNumPlaces() - first);
-        for (std::size_t item = 0; item < NUM_ITEMS; ++item) {
-            REAL *result =
-                items[item].results + component + std::ptrdiff_t(first) * items[item].resultStride;
-            for (std::size_t i = 0; i < count; ++i, result += items[item].resultStride) {
-                for (std::size_t k = 0; k < NUM_COMPONENTS; ++k) {
-                    result[k] = numbers[item][k][i];
-                }
-            }
-        }
-    }
-
-    PlaceMatrix<REAL> const &_matrix;
-    ItemSums<REAL> const &_sums;
-};
-
-template <std::size_t BYTES, typename REAL>
-void sumUpPlaces(PlaceMatrix<REAL> const &matrix, ItemSums<REAL> const &sums) {
-    BlockItemSums<BYTES, REAL>(matrix, sums).Form();
-}
 template <std::size_t BYTES, typename REAL>
 void sumUpPlaces(PlaceMatrix<REAL> const &matrix, PlaceSums<REAL> const &sums) {
     BlockSums<BYTES, REAL>(matrix, sums).Form();
 }
-template <std::size_t BYTES, typename REAL>
-void sumUpPlaces(std::array<PlaceMatrix<REAL>, 2> const &matrices,
-                 DerivativeSums<REAL> const &sums) {
-    DerivativeBlockSums<BYTES, REAL>(matrices, sums).Form();
-}
-template <std::size_t BYTES, typename REAL>
-void sumUpPlaces(MirrorMatrix<REAL> const &matrix, PlaceSums<REAL> const &sums) {
-    MirrorSums<BYTES, REAL>(matrix, sums).Form();
-}
-
 } // namespace
 } // namespace OpenSubdivHex::BfrExt::internal
 

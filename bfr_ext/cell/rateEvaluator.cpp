@@ -113,12 +113,9 @@ template <typename REAL>
 void RateEvaluator<REAL>::Evaluate(CellType const &type, REAL const *points,
                                    std::ptrdiff_t stride) {
     Source const source = {type, nullptr, 0, points, stride, nullptr};
-    bool const isBorderDone = type.IsInLattice() && evaluateLatticeBorder();
     forEachEdge([&](int edge, int rate, int first) {
-        if (!isBorderDone) {
-            evaluateVertex(edge, first);
-            evaluateEdge(edge, rate, first);
-        }
+        evaluateVertex(edge, first);
+        evaluateEdge(edge, rate, first);
         if (_results[1]) {
             evaluateDerivativesOnEdge(source, edge, rate, first);
         }
@@ -143,32 +140,12 @@ void RateEvaluator<REAL>::Evaluate(PlainFaceType const &type) {
                 std::ptrdiff_t(values.GetPaddedSize()),
                 indices.data()};
     };
-    // One matrix for both takes less time than two; but there would be one for each pair of rates.
-    bool const isUniform = _tessellation.IsUniform() && _inner.GetSize() <= kBlockSize;
     forEachEdge([&](int edge, int rate, int first) {
         evaluateVertex(edge, first);
-        bool const isReversed = _border.IsReversed(std::size_t(edge));
-        HalfWithEdge const *const half =
-            isUniform && rate > 1 ? face.GetHalfWithEdge(edge, isReversed) : nullptr;
-        if (half) {
-            indices.resize(half->places.GetColumns().size());
-            face.FindHalfIndices(edge, isReversed, indices.data());
-            evaluateHalf({half->half->GetType(), half->half.get(), std::size_t(edge) + 1,
-                          values.GetPoints(), std::ptrdiff_t(values.GetPaddedSize()),
-                          indices.data()},
-                         *half, isReversed, rate, first);
-            if (!_results[1]) {
-                return;
-            }
-        } else {
-            evaluateEdge(edge, rate, first);
-        }
+        evaluateEdge(edge, rate, first);
         Source const source = getSource(std::size_t(edge) + 1);
-        if (!half) {
-            evaluateInside(source, PatternOf::Rates);
-        }
+        evaluateInside(source);
         if (_results[1]) {
-            evaluateInside(source, PatternOf::RateDerivatives);
             evaluateDerivativesOnEdge(source, edge, rate, first);
         }
     });
@@ -185,16 +162,6 @@ void RateEvaluator<REAL>::forEachEdge(FUNCTION const &function) const {
         function(edge, rate, first);
         first += rate;
     }
-}
-
-template <typename REAL>
-bool RateEvaluator<REAL>::evaluateLatticeBorder() const {
-    using Border = BorderEvaluator<REAL>;
-    typename Border::LatticeEdge edges[Border::kMaxLatticeFaceSize];
-    forEachEdge([&](int edge, int rate, int first) {
-        edges[edge] = {rate, rate - 1, getResult(0, first)};
-    });
-    return _border.EvaluateInLattice(edges, _resultStride, true);
 }
 
 template <typename REAL>
@@ -266,18 +233,6 @@ void RateEvaluator<REAL>::evaluateDerivativesOnEdge(Source const &source, int ed
         });
 }
 
-// The places inside of a half cell and of the edge beside it, where all rates are the same: so these tell which places of
-// the face they are.
-template <typename REAL>
-void RateEvaluator<REAL>::evaluateHalf(Source const &source, HalfWithEdge const &half,
-                                       bool isReversed, int rate, int first) {
-    int const key[] = {getFaceKey(), int(source.child), rate};
-    auto const &matrices = source.GetPatterns().template Get<Matrices>(
-        PatternTable::GetKind<REAL>(PatternOf::RatesWithEdge), std::begin(key), std::end(key),
-        [&] { return makeHalf(source, half, isReversed, rate, first); });
-    sumUp(source, matrices, false, 0);
-}
-
 // The matrices of those places that the source has.
 template <typename REAL>
 typename RateEvaluator<REAL>::Matrices
@@ -291,35 +246,6 @@ RateEvaluator<REAL>::makeInside(Source const &source, std::vector<BfrPlace> cons
     Matrices matrices = makeMatrices(source, ofChild, hasDerivatives);
     matrices.runs = std::move(runs);
     return matrices;
-}
-
-// What the edge makes is, to the bit, what BorderEvaluator makes of it: zeros change no sum of numbers that are finite.
-template <typename REAL>
-typename RateEvaluator<REAL>::Matrices
-RateEvaluator<REAL>::makeHalf(Source const &source, HalfWithEdge const &half, bool isReversed,
-                              int rate, int first) {
-    Matrices result;
-    std::vector<BfrPlace> const inside =
-        selectPlaces(_inner.Find(0, _inner.GetSize()), _tessellation.GetNumBoundaryCoords(),
-                     source.child, _tessellation.GetFaceSize(), result.runs);
-    PlaceMatrix<REAL> &matrix = result.matrices.emplace_back(inside.size() + std::size_t(rate) - 1,
-                                                             half.places.GetColumns().size());
-    std::size_t row = 0;
-    std::vector<Rows> const rows = findRows(source, inside, false);
-    for (std::vector<double> const &weights : rows[0]) {
-        matrix.Set(row++, half.places.Spread(source.cell->GetPlaces(), weights));
-    }
-    RingCell const &longEdge = *half.longEdge;
-    std::vector<double> ordered;
-    BorderStencil stencil;
-    for (int i = 1; i < rate; ++i) {
-        stencil.Find(longEdge.GetType(), double(isReversed ? rate - i : i) / rate,
-                     longEdge.IsInner() ? StencilOf::Step : StencilOf::Points);
-        longEdge.GetPlaces().Order(stencil.GetWeights(), ordered);
-        addToRuns(int(row), first + i, result.runs);
-        matrix.Set(row++, half.places.Spread(longEdge.GetPlaces(), ordered));
-    }
-    return result;
 }
 
 template <typename REAL>

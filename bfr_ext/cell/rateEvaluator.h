@@ -80,19 +80,14 @@ private:
                                  bool hasDerivatives);
     static Matrices makeInside(Source const &source, std::vector<BfrPlace> const &places,
                                int faceSize, bool hasDerivatives);
-    Matrices makeHalf(Source const &source, HalfWithEdge const &half, bool isReversed, int rate,
-                      int first);
     template <typename FUNCTION>
     void forEachEdge(FUNCTION const &function) const;
-    bool evaluateLatticeBorder() const;
     void evaluateVertex(int edge, int first) const;
     void evaluateEdge(int edge, int rate, int first) const;
     // What kind of face it is, with its parameterization.
     int getFaceKey() const;
     void evaluateInside(Source const &source);
     void evaluateInside(Source const &source, PatternOf of);
-    void evaluateHalf(Source const &source, HalfWithEdge const &half, bool isReversed, int rate,
-                      int first);
     void evaluateDerivativesOnEdge(Source const &source, int edge, int rate, int first) const;
     void sumUp(Source const &source, Matrices const &matrices, bool areDerivatives,
                int firstPlace) const;

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
-#include <iterator>
 #include <numeric>
 #include <optional>
 #include <type_traits>
@@ -93,46 +92,6 @@ RingPlaces::RingPlaces(std::vector<Far::Index> const &verts, std::vector<RingLay
             ++_ends.back();
         }
     }
-}
-
-std::pair<RingPlaces::Iterator, RingPlaces::Iterator>
-RingPlaces::getPlaces(std::size_t ring) const {
-    auto const getEnd = [&](std::size_t numRings) {
-        std::size_t const count = std::min(numRings, _ends.size());
-        return _places.begin() + std::ptrdiff_t(count == 0 ? 0 : _ends[count - 1]);
-    };
-    return {getEnd(ring), getEnd(ring + 1)};
-}
-
-// Both take points from the same rings.
-RingPlaces RingPlaces::Join(RingPlaces const &a, RingPlaces const &b) {
-    RingPlaces result;
-    for (std::size_t ring = 0; ring < std::max(a.GetNumRings(), b.GetNumRings()); ++ring) {
-        auto const ofA = a.getPlaces(ring);
-        auto const ofB = b.getPlaces(ring);
-        std::set_union(ofA.first, ofA.second, ofB.first, ofB.second,
-                       std::back_inserter(result._places));
-        result._ends.push_back(result._places.size());
-    }
-    result._columns.resize(1 + result._places.size());
-    std::iota(result._columns.begin(), result._columns.end(), 0);
-    return result;
-}
-
-std::vector<double> RingPlaces::Spread(RingPlaces const &part,
-                                       std::vector<double> const &weights) const {
-    std::vector<double> result(_columns.size());
-    result[0] = weights[0];
-    std::size_t column = 1;
-    for (std::size_t ring = 0; ring < part.GetNumRings(); ++ring) {
-        auto own = getPlaces(ring).first;
-        auto const ofPart = part.getPlaces(ring);
-        for (auto place = ofPart.first; place != ofPart.second; ++place) {
-            own = std::lower_bound(own, getPlaces(ring).second, *place);
-            result[1 + std::size_t(own - _places.begin())] = weights[column++];
-        }
-    }
-    return result;
 }
 
 void RingPlaces::Order(std::vector<double> const &weights, std::vector<double> &result) const {
@@ -226,7 +185,7 @@ std::vector<int> RingCell::GetKey() const {
     return key;
 }
 
-std::unique_ptr<RingCell const> RingCells::Make(CellPatch cell,
+std::unique_ptr<RingCell const> RingCells::make(CellPatch cell,
                                                 std::vector<RingLayout> const &rings) {
     RingPlaces points(cell.patch.sources, rings);
     if (!_masks.AreUsed()) {
@@ -247,7 +206,7 @@ std::unique_ptr<RingCell const> RingCells::Make(CellPatch cell,
 
 // What differs in rings alone that the cell does not depend on is the same.
 RingCell const &RingCells::find(CellPatch cell, std::vector<RingLayout> const &rings) {
-    std::unique_ptr<RingCell const> ringCell = Make(std::move(cell), rings);
+    std::unique_ptr<RingCell const> ringCell = make(std::move(cell), rings);
     CellType const &type = ringCell->GetType();
     std::vector<int> const key = ringCell->GetKey();
     constexpr int kKind = PatternTable::GetKind<double>(PatternOf::RingCell);
@@ -332,19 +291,7 @@ private:
         RingCell const &longEdge = findItem(CellKind::LongEdge, _key, edge, 0);
         RingCell const &reversed =
             findItem(CellKind::LongEdge, RingKey({end.From(1), start.From(-1)}), edge, 1);
-        std::vector<RingLayout> layouts = getLayouts(edge);
-        HalfWithEdge ofEdge = makeHalf(edge, layouts, longEdge);
-        layouts[0] = end.From(1);
-        layouts[1] = start.From(-1);
-        return {&half, {std::move(ofEdge), makeHalf(edge, layouts, reversed)}};
-    }
-
-    HalfWithEdge makeHalf(int edge, std::vector<RingLayout> const &layouts,
-                          RingCell const &longEdge) {
-        std::unique_ptr<RingCell const> half =
-            _cells.Make(getRefinement().children[std::size_t(edge) + 1], layouts);
-        RingPlaces places = RingPlaces::Join(half->GetPlaces(), longEdge.GetPlaces());
-        return {std::move(half), &longEdge, std::move(places)};
+        return {&half, {&longEdge, &reversed}};
     }
 
     RingVertex makeVertex(int vert) {
@@ -403,22 +350,19 @@ void FaceRings::findIndices(std::size_t child, RingPlaces const &places, RingSte
     places.FindIndices(_rings.GetCenter(first, 0, step), getBlock, indices);
 }
 
-// The face to the left of the edge is the first of both rings: this one, or that across the edge.  The other rings
-// are those of the face.
-void FaceRings::findEdgeIndices(int edge, bool isReversed, RingPlaces const &places,
-                                int *indices) const {
+// The face to the left of the edge is the first of both rings: this one, or that across the edge.
+void FaceRings::FindLongEdgeIndices(int edge, bool isReversed, int *indices) const {
     int const next = edge + 1 < int(_rings.GetRings().size()) ? edge + 1 : 0;
     int const start = isReversed ? next : edge;
     int const first = isReversed ? 1 : 0;
     int const end = isReversed ? edge : next;
     RingStep const step = _rings.GetLastStep();
     auto const getBlock = [&](int ring) {
-        if (ring > 1) {
-            return _rings.GetBlock((edge + ring) % int(_rings.GetRings().size()), 0, step);
-        }
         return ring == 0 ? _rings.GetBlock(start, first, step) : _rings.GetBlock(end, -first, step);
     };
-    places.FindIndices(_rings.GetCenter(start, first, step), getBlock, indices);
+    GetLongEdge(edge, isReversed)
+        ->GetPlaces()
+        .FindIndices(_rings.GetCenter(start, first, step), getBlock, indices);
 }
 
 template <typename REAL>

@@ -42,17 +42,10 @@ public:
     }
     /// Weights by column from those by vertex.
     void Order(std::vector<double> const &weights, std::vector<double> &result) const;
-    /// The columns of two, of vertices of the same level in terms of the same rings.
-    static RingPlaces Join(RingPlaces const &a, RingPlaces const &b);
-    std::size_t GetNumRings() const { return _ends.size(); }
-    /// Weights by column from those of \p part, one of those that were joined: 0 where that has no column.
-    std::vector<double> Spread(RingPlaces const &part, std::vector<double> const &weights) const;
     /// Appends all that tells them from others.
     void AddKey(std::vector<int> &key) const;
 
 private:
-    using Iterator = std::vector<int>::const_iterator;
-
     // Writes sums of a number with some others, four at a time, the last four of which may be written twice: loops of
     // different lengths cost more than sums.
     static void addToAll(int number, int const *from, std::size_t count, int *to) {
@@ -75,9 +68,6 @@ private:
         }
         addToFour(count - kStep);
     }
-
-    // The places of a ring, ascending.
-    std::pair<Iterator, Iterator> getPlaces(std::size_t ring) const;
 
     std::vector<int> _columns;
     std::vector<int> _places;
@@ -201,19 +191,11 @@ struct LatticeItem {
     CellType const *type;
 };
 
-/// A half cell of a base face and the long edge beside it in terms of the same points, so that one matrix makes what
-/// both have.
-struct HalfWithEdge {
-    std::unique_ptr<RingCell const> half; ///< of rings in the order of the long edge's
-    RingCell const *longEdge;
-    RingPlaces places; ///< of both
-};
-
 /// What the first step makes of an edge of plain base faces, seen from one of them.
 struct RingEdge {
     RingCell const *half; ///< the cell on the side of the face
-    /// The same with the long edge, as the face runs, and against it.
-    HalfWithEdge halvesWithEdge[2];
+    /// The long edge, as the face runs, and against it.
+    RingCell const *longEdges[2];
 };
 
 /// What the first step makes of a vertex of plain base faces.
@@ -256,12 +238,6 @@ public:
         return find<RingVertex>(_vertices, 0, key, make);
     }
 
-    /// \brief Makes a cell of the caller's own, which Find() does not find.
-    ///
-    /// \param rings  as of Find()
-    std::unique_ptr<RingCell const> Make(FarExt::internal::CellPatch cell,
-                                         std::vector<RingLayout> const &rings);
-
     /// \brief What make() gave first of a kind of items in the lattice of a size of faces: mostly all look like
     /// it.
     template <typename MAKE>
@@ -279,6 +255,8 @@ private:
         std::vector<int> const &numbers = key.Get();
         return table.Get<FOUND>(kind, numbers.data(), numbers.data() + numbers.size(), make);
     }
+    std::unique_ptr<RingCell const> make(FarExt::internal::CellPatch cell,
+                                         std::vector<RingLayout> const &rings);
     RingCell const &find(FarExt::internal::CellPatch cell, std::vector<RingLayout> const &rings);
 
     CellTypes &_types;
@@ -337,25 +315,13 @@ public:
         findIndices(child, GetChild(child).GetPoints(), RingStep::First, indices);
     }
 
-    /// The half cell of an edge with its long edge, which may run against the face; null where it is in a lattice.
-    HalfWithEdge const *GetHalfWithEdge(int edge, bool isReversed) const {
-        return IsEdgeInLattice(edge)
-                   ? nullptr
-                   : &_edges[std::size_t(edge)]->halvesWithEdge[isReversed ? 1 : 0];
-    }
-    /// The long edge alone.
+    /// The long edge of an edge, which may run against the face; null where it is in a lattice.
     RingCell const *GetLongEdge(int edge, bool isReversed) const {
-        HalfWithEdge const *const half = GetHalfWithEdge(edge, isReversed);
-        return half ? half->longEdge : nullptr;
+        return IsEdgeInLattice(edge) ? nullptr
+                                     : _edges[std::size_t(edge)]->longEdges[isReversed ? 1 : 0];
     }
     /// Writes the indices of a long edge.
-    void FindLongEdgeIndices(int edge, bool isReversed, int *indices) const {
-        findEdgeIndices(edge, isReversed, GetLongEdge(edge, isReversed)->GetPlaces(), indices);
-    }
-    /// The same with its half.
-    void FindHalfIndices(int edge, bool isReversed, int *indices) const {
-        findEdgeIndices(edge, isReversed, GetHalfWithEdge(edge, isReversed)->places, indices);
-    }
+    void FindLongEdgeIndices(int edge, bool isReversed, int *indices) const;
 
     /// The V-vertex of a vertex with so many faces before this one; null where it is in a lattice.
     RingCell const *GetVVertex(int vert, int turn) const {
@@ -367,7 +333,6 @@ private:
 
     void findIndices(std::size_t child, RingPlaces const &places, RingStep step,
                      int *indices) const;
-    void findEdgeIndices(int edge, bool isReversed, RingPlaces const &places, int *indices) const;
 
     VertexRings _rings;
     RingCell const *_whole = nullptr;

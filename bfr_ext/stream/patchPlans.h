@@ -43,14 +43,6 @@ struct PatchPlan {
     PatchPlan(LevelTessellation ofFace, PlanOptions const &options)
         : tessellation(std::move(ofFace)), hasDerivatives(options.hasDerivatives) {}
 
-    /// Memory, in bytes.
-    std::size_t GetSize() const {
-        return kBytesOfPlan + std::size_t(tessellation.GetNumCoords()) * kBytesOfCoord +
-               std::size_t(tessellation.GetNumFacetVertices()) * sizeof(int) +
-               std::size_t(tessellation.GetNumFacets()) * 2 * sizeof(int) +
-               tessellation.getSizeOfCells(hasDerivatives);
-    }
-
     /// \brief About what it takes in memory to make the plan of some levels, with the plan itself.
     ///
     /// The cells in which the levels of edges take part are counted as if they had that of the inside;
@@ -139,7 +131,8 @@ public:
             }
         }
         auto plan = std::make_shared<PatchPlan const>(makeTessellation(), _options);
-        std::size_t const size = plan->GetSize();
+        std::size_t const size = std::size_t(plan->tessellation.GetNumCoords()) *
+                                 PatchPlan::GetBytesOfPlace(_options.hasDerivatives);
         std::lock_guard<std::mutex> const lock(_mutex);
         if (std::shared_ptr<PatchPlan const> other = look(key)) {
             return other;
@@ -221,9 +214,7 @@ private:
             return plan;
         }
         makeRoom(sizeOfMaking);
-        std::shared_ptr<PatchPlan const> plan = make();
-        std::size_t const size = plan->GetSize();
-        return add(key, std::move(plan), size);
+        return add(key, make(), sizeOfMaking);
     }
 
     // For something of this size, as far as plans are not in use.

@@ -22,7 +22,6 @@ using BfrExt::internal::CellRules;
 using BfrExt::internal::CellType;
 using BfrExt::internal::CellTypes;
 using BfrExt::internal::FaceRings;
-using BfrExt::internal::HalfWithEdge;
 using BfrExt::internal::PlainFaceGatherer;
 using BfrExt::internal::PlainFaceType;
 using BfrExt::internal::RingCell;
@@ -182,8 +181,6 @@ private:
             ASSERT_EQ(face.IsEdgeInLattice(edge), !face.GetLongEdge(edge, false));
             if (face.IsEdgeInLattice(edge)) {
                 expectLatticeItem(plain, edge, turns);
-            } else {
-                expectHalves(type, face, edge, values, points);
             }
         }
         for (int vert = 0; vert < numEdges; ++vert) {
@@ -192,42 +189,6 @@ private:
             if (face.IsVertexInLattice(vert)) {
                 expectLatticeItem(plain, numEdges + vert, turns);
             }
-        }
-    }
-
-    // Half cells in terms of the points that they have together with a long edge.
-    void expectHalves(CellType const &type, FaceRings const &face, int edge,
-                      RingValues<double> const &values, std::vector<double> const &points) {
-        for (bool const isReversed : {false, true}) {
-            HalfWithEdge const &half = *face.GetHalfWithEdge(edge, isReversed);
-            std::vector<int> indices(half.places.GetColumns().size());
-            face.FindHalfIndices(edge, isReversed, indices.data());
-            // Each part has its own columns, in their order.
-            auto const pickPart = [&](RingPlaces const &part) {
-                std::vector<double> numbers(part.GetColumns().size());
-                std::iota(numbers.begin(), numbers.end(), 1.0);
-                std::vector<int> ofPart;
-                std::vector<double> const spread = half.places.Spread(part, numbers);
-                for (std::size_t i = 0; i < spread.size(); ++i) {
-                    if (spread[i] != 0) {
-                        EXPECT_EQ(spread[i], 1.0 + double(ofPart.size()));
-                        ofPart.push_back(indices[i]);
-                    }
-                }
-                return ofPart;
-            };
-            auto const child = std::size_t(edge) + 1;
-            std::vector<double> const expected = stepTo(type, child, points);
-            CellType const &ofChild = *type.GetChildren()[child].type;
-            RingPlaces const &ofHalf = half.half->GetPlaces();
-            std::vector<int> const halfIndices = pickPart(ofHalf);
-            ASSERT_EQ(halfIndices.size(), ofHalf.GetColumns().size());
-            expectNear(pickCell(ofHalf, values, halfIndices),
-                       half.half->IsInner() ? step(ofChild, expected) : expected);
-            indices.resize(half.longEdge->GetColumns().size());
-            std::vector<int> const edgeIndices = pickPart(half.longEdge->GetPlaces());
-            face.FindLongEdgeIndices(edge, isReversed, indices.data());
-            EXPECT_EQ(edgeIndices, indices);
         }
     }
 

@@ -8,7 +8,6 @@
 
 #include "bfr_ext/cell/cellValues.h"
 #include "bfr_ext/cell/flatness.h"
-#include "bfr_ext/cell/slopeBounds.h"
 #include "bfr_ext/surfaceFactory.h"
 #include "bfr_ext/surfaceFactoryCache.h"
 #include "bfr_ext/view.h"
@@ -607,12 +606,13 @@ void expectNoneIsSeen(CurveOfEdge const &curve, Polyline const &culled, Polyline
 struct CullingCounts {
     void Report() const {
         std::cout << cells[0] << " cells are not culled, " << cells[1] << " outside, " << cells[2]
-                  << " facing away, with " << points << " points; " << ofEdges
-                  << " points of sharp edges are culled\n";
+                  << " facing away, with " << points << " points, " << seen
+                  << " of which are seen; " << ofEdges << " points of sharp edges are culled\n";
     }
 
     std::array<long, 3> cells = {}; ///< by what is known of them
-    long points = 0;
+    long points = 0;                ///< of cells that face away
+    long seen = 0;                  ///< of these
     long ofEdges = 0;
 };
 
@@ -686,17 +686,21 @@ private:
             if (visibility[std::size_t(cell)] == CellVisibility::Visible) {
                 continue;
             }
-            ++counts.points;
             SurfacePoint const &surface = point.surface;
             Vector3 const toEye = Subtract(ToVector(camera.eye), surface.p);
-            ASSERT_FALSE(Dot(Cross(surface.du, surface.dv), toEye) > 0 &&
-                         picture.HasPoint(surface.p))
-                << "cell " << cell;
+            bool const isInPicture = picture.HasPoint(surface.p);
+            if (visibility[std::size_t(cell)] == CellVisibility::Outside) {
+                ASSERT_FALSE(isInPicture) << "cell " << cell;
+                continue;
+            }
+            ++counts.points;
+            // Estimated.
+            counts.seen += Dot(Cross(surface.du, surface.dv), toEye) > 0 && isInPicture;
         }
         for (CurveOfEdge const &curve : face.edges) {
             Polyline const culled = lookAtEdge(camera, face, curve, counts);
-            // Where a face is culled, so are its edges.
-            ASSERT_TRUE(visibility[0] == CellVisibility::Visible || culled == Polyline());
+            // Where a face is outside, so are its edges.
+            ASSERT_TRUE(visibility[0] != CellVisibility::Outside || culled == Polyline());
             // A piece of the curve fills the picture, without the ends of the edge.
             Camera near = camera;
             Vector3 const &point = curve.points[_random() % curve.points.size()];
@@ -727,7 +731,7 @@ private:
 
 } // namespace
 
-TEST(View, NothingThatIsSeenIsCulled) {
+TEST(View, HardlyAnythingThatIsSeenIsCulled) {
     std::mt19937 random(5);
     BfrExt::SurfaceFactoryCache cache;
     CullingCounts counts;
@@ -738,8 +742,9 @@ TEST(View, NothingThatIsSeenIsCulled) {
         ASSERT_NO_FATAL_FAILURE(check.Look(100, counts));
     }
     counts.Report();
+    EXPECT_LE(1000 * counts.seen, counts.points);
     EXPECT_GT(counts.cells[1], 10000);
-    EXPECT_GT(counts.cells[2], 1000);
+    EXPECT_GT(counts.cells[2], 10000);
     EXPECT_GT(counts.ofEdges, 1000);
 }
 
@@ -805,7 +810,7 @@ TEST(View, EdgesThatBendIntoThePictureAreSeen) {
 }
 
 // The shapes have these surfaces in turn, and a face each, since what is made for types of cells takes its time.
-TEST(View, NothingThatIsSeenIsCulledOfOtherSurfaces) {
+TEST(View, HardlyAnythingThatIsSeenIsCulledOfOtherSurfaces) {
     std::mt19937 random(6);
     BfrExt::SurfaceFactoryCache cache;
     SurfaceCase const cases[] = {kPlainCases[1], kTruncateCases[2], kPlainCases[0],
@@ -827,54 +832,9 @@ TEST(View, NothingThatIsSeenIsCulledOfOtherSurfaces) {
         std::cout << cases[i].GetName() << ": ";
         counts[i].Report();
         EXPECT_GT(counts[i].cells[1], 100);
-        EXPECT_EQ(counts[i].cells[2] > 0, cases[i].mask != ReferenceMask::Average);
+        EXPECT_LE(1000 * counts[i].seen, counts[i].points);
+        EXPECT_GT(counts[i].cells[2], 1000);
         EXPECT_GT(counts[i].ofEdges, 100);
-    }
-}
-
-// Where points lie by chance, normals differ as much as they can.
-TEST(View, NormalsAreWithinTheirBounds) {
-    std::mt19937 random(17);
-    std::normal_distribution<double> normal;
-    for (auto const mask : {ReferenceMask::Smooth, ReferenceMask::Cosine}) {
-        Shape shape = MakeTiling(Tiling::Hexagons, 7, 7);
-        std::vector<double> const flat = shape.positions;
-        auto const refiner = makeRefiner(shape, mask);
-        double largest = 0;
-        int numCells = 0;
-        for (int round = 0; round < 40; ++round) {
-            double const amount = 0.002 * std::pow(1.15, round);
-            for (std::size_t i = 0; i < flat.size(); ++i) {
-                shape.positions[i] = flat[i] + amount * normal(random);
-            }
-            BaseCells cells(*refiner, shape.positions);
-            forDescendants(cells.Make(24), 2, [&](CellValues const &values) {
-                auto const &bounds = BfrExt::internal::SlopeBounds::Find(values.GetType());
-                if (!bounds.Exist()) {
-                    return;
-                }
-                auto const normals = bounds.GetNormals(values);
-                if (!std::isfinite(normals.spread)) {
-                    return;
-                }
-                ++numCells;
-                forDescendants(values, 4, [&](CellValues const &part) {
-                    for (int i = 0; i < part.GetType().GetNumCorners(); ++i) {
-                        SurfacePoint point;
-                        part.EvaluateCorner(i, point.du.data(), point.dv.data());
-                        Vector3 const found = GetNormal(point);
-                        double const height = Dot(found, normals.middle);
-                        double const across =
-                            GetLength(Subtract(found, Scale(normals.middle, height)));
-                        ASSERT_LE(across, normals.spread * height);
-                        largest = std::max(largest, across / height / normals.spread);
-                    }
-                });
-            });
-        }
-        std::cout << numCells << " cells, where normals come to " << largest << " of the bound\n";
-        EXPECT_GT(numCells, 100);
-        EXPECT_GT(largest, 0.1);
     }
 }
 

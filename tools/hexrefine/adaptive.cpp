@@ -111,8 +111,7 @@ void AddAdaptiveOptions(CLI::App &app, AdaptiveArguments *arguments) {
         ->needs(adaptive)
         ->capture_default_str();
     app.add_flag("--cull", arguments->isCulling,
-                 "Leave coarse what is outside of the picture or, with --mask smooth and cosine, "
-                 "faces away for certain")
+                 "Leave coarse what is outside of the picture or faces away")
         ->needs(adaptive);
     app.add_option("--max-level", arguments->maxLevel, "The last level that --adaptive makes")
         ->check([](std::string const &word) {

@@ -126,7 +126,7 @@ void addOptions(CLI::App &app, Arguments *arguments) {
         ->needs(adaptive)
         ->capture_default_str();
     app.add_flag("--cull", arguments->cells.isCulling,
-                 "Leave coarse what is outside of the picture or faces away for certain")
+                 "Leave coarse what is outside of the picture or faces away")
         ->needs(adaptive);
     app.add_option("--shading", arguments->shading, "What the faces show")
         ->check(CLI::IsMember(kShadingNames))
