@@ -252,9 +252,16 @@ private:
 
     CellFacing const &findFacing(Node &node) {
         if (getMeasures(node).facing < 0) {
-            constexpr int kNumSteps = 2;
+            // Needles may be folded inside of a face.
+            int const numSteps = node.parent ? 2 : 3;
             CellFacing::Maker maker;
-            addPolygons(makeCell(node), kNumSteps, maker);
+            addPolygons(makeCell(node), numSteps, maker);
+            for (int corner = 0; corner < getNumCorners(makeCell(node)); ++corner) {
+                double du[3];
+                double dv[3];
+                _cells.EvaluateCorner(makeCell(node), corner, du, dv);
+                maker.AddNormal(Cross(ToVector3(du), ToVector3(dv)));
+            }
             getMeasures(node).facing = int(_measures.facings.size());
             _measures.facings.push_back(maker.Make());
         }
@@ -274,10 +281,14 @@ private:
         }
     }
 
-    void findCorners(std::size_t cell) {
+    int getNumCorners(std::size_t cell) const {
         CellValues const &values = _cells[cell];
-        int const numCorners =
-            values.IsPlainBase() ? values.GetNumChildren() - 1 : values.GetType().GetNumCorners();
+        return values.IsPlainBase() ? values.GetNumChildren() - 1
+                                    : values.GetType().GetNumCorners();
+    }
+
+    void findCorners(std::size_t cell) {
+        int const numCorners = getNumCorners(cell);
         _corners.resize(3 * std::size_t(numCorners));
         for (int i = 0; i < numCorners; ++i) {
             _cells.EvaluateCorner(cell, i, &_corners[3 * std::size_t(i)]);

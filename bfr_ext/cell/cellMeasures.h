@@ -38,8 +38,8 @@ struct CellMeasures {
     int facing = -1;         ///< in the same face; -1: not found
 };
 
-/// \brief Where a cell faces, estimated from the polygons of the corners of the cells that some steps make of it: their
-/// normals, and where their corners are.
+/// \brief Where a cell faces, estimated from the polygons of the corners of the cells that some steps make of it, and from
+/// the normals of the surface at its own corners.
 ///
 /// With m the unit normal of all, others are m + s w, with w of length 1 at most in the plane across from it.  With c the
 /// mean of the places and r how far they are from it, (m + s w) . (eye - p) is at most m . (eye - c) - m . (p - c) +
@@ -74,9 +74,11 @@ public:
             _sumOfPlaces = internal::Add(_sumOfPlaces, _places.back());
         }
     }
+    /// Adds a normal of the surface, of any length.
+    void AddNormal(Vector3 const &normal) { _areas.push_back(normal); }
     CellFacing Make() const {
         // What lies between the polygons, and what normals have in each of them.
-        constexpr double kFactor = 2;
+        constexpr double kFactor = 3;
         CellFacing facing;
         double const length = GetLength(_sum);
         if (!(length > 0)) {
@@ -103,7 +105,7 @@ public:
     }
 
 private:
-    std::vector<Vector3> _areas;
+    std::vector<Vector3> _areas; // and normals
     Vector3 _sum = {};
     std::vector<Vector3> _places;
     Vector3 _sumOfPlaces = {};

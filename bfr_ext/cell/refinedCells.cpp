@@ -25,7 +25,7 @@ std::size_t RefinedCells::makeChildren(std::size_t cell) {
     return first;
 }
 
-void RefinedCells::EvaluateCorner(std::size_t cell, int corner, double *p) {
+CellValues const &RefinedCells::findCorner(std::size_t cell, int &corner) {
     while (!hasCommonType(cell)) {
         CellValues const &values = _cells[cell].values;
         bool const isWhole = values.IsPlainBase() || values.GetType().IsWhole();
@@ -33,7 +33,7 @@ void RefinedCells::EvaluateCorner(std::size_t cell, int corner, double *p) {
         corner = isWhole ? 0 : HalfCell::kCornersOfChildren[corner];
         cell = GetFirstChild(cell) + std::size_t(child);
     }
-    _cells[cell].values.EvaluateCorner(corner, p);
+    return _cells[cell].values;
 }
 
 } // namespace OpenSubdivHex::BfrExt::internal

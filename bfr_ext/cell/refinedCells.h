@@ -45,7 +45,13 @@ public:
     /// \brief Writes the surface at a corner.
     ///
     /// Cells whose types few are of have it from their children, so that few limit masks are needed.
-    void EvaluateCorner(std::size_t cell, int corner, double *p);
+    void EvaluateCorner(std::size_t cell, int corner, double *p) {
+        findCorner(cell, corner).EvaluateCorner(corner, p);
+    }
+    /// Writes derivatives there, which span the tangent plane as those by u and v do.
+    void EvaluateCorner(std::size_t cell, int corner, double *du, double *dv) {
+        findCorner(cell, corner).EvaluateCorner(corner, du, dv);
+    }
 
     /// How many cells there are.
     std::size_t GetSize() const { return _size; }
@@ -57,6 +63,9 @@ public:
     static constexpr int kFirstCommonLevel = 2;
 
 private:
+    // That of the cell that the corner is evaluated from, and which corner of that it is.
+    CellValues const &findCorner(std::size_t cell, int &corner);
+
     struct Cell {
         CellValues values;
         std::size_t firstChild = 0; // 0: not made
