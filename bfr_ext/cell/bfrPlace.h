@@ -40,7 +40,8 @@ BfrPlace MoveToChild(BfrPlace const &place, CellStep const &step, int faceSize);
 /// \param second  null, or three rows: of the first coordinate twice, of both, and of the second twice
 template <typename REAL>
 void ToUv(BfrPlace const &place, std::size_t size, REAL *const first[2], REAL *const second[3]) {
-    auto const &[x, y] = place.toOwn;
+    Pair const &x = place.toOwn[0];
+    Pair const &y = place.toOwn[1];
     for (std::size_t i = 0; i < size; ++i) {
         double const by[2] = {double(first[0][i]), double(first[1][i])};
         for (std::size_t k = 0; k < 2; ++k) {

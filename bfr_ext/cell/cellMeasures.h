@@ -75,7 +75,7 @@ public:
         }
     }
     /// Adds a normal of the surface, of any length.
-    void AddNormal(Vector3 const &normal) { _areas.push_back(normal); }
+    void AddNormal(Vector3 const &ofSurface) { _areas.push_back(ofSurface); }
     CellFacing Make() const {
         // What lies between the polygons, and what normals have in each of them.
         constexpr double kFactor = 3;
@@ -86,16 +86,16 @@ public:
         }
         facing.normal = Scale(_sum, 1 / length);
         facing.center = Scale(_sumOfPlaces, 1 / double(_places.size()));
-        double spread = 0;
+        double largest = 0; // tangent of an angle to the normal
         for (Vector3 const &area : _areas) {
             double const height = Dot(facing.normal, area);
             if (!(height > 0)) {
                 return facing;
             }
-            spread =
-                std::max(spread, GetLength(Subtract(area, Scale(facing.normal, height))) / height);
+            largest =
+                std::max(largest, GetLength(Subtract(area, Scale(facing.normal, height))) / height);
         }
-        facing.spread = kFactor * spread;
+        facing.spread = kFactor * largest;
         for (Vector3 const &place : _places) {
             Vector3 const d = Subtract(place, facing.center);
             facing.radius = std::max(facing.radius, kFactor * GetLength(d));

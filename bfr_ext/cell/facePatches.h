@@ -34,7 +34,7 @@ struct PatchPlace {
 
 /// Finds the patch of a place of a base face of \p size sides, with derivatives as far as \p numDerivatives asks:
 /// 0, 1 or 2.
-PatchPlace FindPatchPlace(BfrPlace const &place, int size, int level, int numDerivatives);
+PatchPlace FindPatchPlace(BfrPlace const &ofFace, int size, int level, int numDerivatives);
 
 /// \brief Makes the points of all patches of a face from its control points.
 ///
