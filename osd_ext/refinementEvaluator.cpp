@@ -22,7 +22,6 @@ using FarExt::StatusCode;
 using FarExt::TopologyRefiner;
 using FarExt::internal::FVarChannel;
 using FarExt::internal::MeshLevels;
-using FarExt::internal::Refinement;
 
 namespace {
 
@@ -147,18 +146,11 @@ RefinementEvaluator::Impl::Impl(TopologyRefiner const &topologyRefiner, Options 
     _refinements.resize(std::size_t(maxLevel));
     FarExt::Interpolation const interpolation = FarExt::internal::GetModeInterpolation(
         refiner, options.interpolationMode, options.fvarChannel);
-    internal::TileMap tileMap(
-        mesh.levels[0], internal::GetNumTiles(mesh.levels[std::size_t(std::max(0, maxLevel - 1))]));
-    std::vector<Refinement const *> refinements; // up to the level that is made
     for (std::size_t level = 0; level < _refinements.size(); ++level) {
-        if (level > 0) {
-            tileMap.Refine(*refinements[level - 1], level > 1 ? refinements[level - 2] : nullptr);
-        }
-        refinements.push_back(&mesh.refinements[level]);
         internal::PrepareRefinement(FarExt::internal::GetRules(mesh.levels[level],
                                                                refiner.GetHexSchemeOptions(),
                                                                interpolation),
-                                    refinements, tileMap, _refinements[level]);
+                                    mesh.refinements[level], _refinements[level]);
     }
     for (int level = 0; level <= maxLevel; ++level) {
         numElements.push_back(mesh.levels[std::size_t(level)].numVertices);

@@ -43,7 +43,7 @@ inline void storeExactly(float *dst, QuadPair const &pair) {
 }
 
 // How elements of WIDTH floats are read and written.  What is not exact takes in a float of the element that
-// follows, or comes before, where three are packed: one that no other thread may be writing meanwhile.
+// follows, where three are packed: one that no other thread may be writing meanwhile.
 template <int WIDTH, bool IS_PACKED>
 struct Access {
     static constexpr int kWidth = WIDTH;
@@ -60,15 +60,6 @@ struct Access {
     // With the first float of the next element.
     static auto Load(Elements<float const> const &src, std::ptrdiff_t i) {
         return loadExactly<kReach>(At(src, i));
-    }
-    // With the last float of the element before.
-    static auto LoadWithBefore(Elements<float const> const &src, std::ptrdiff_t i) {
-        if constexpr (kReach == WIDTH) {
-            return LoadExactly(src, i);
-        } else {
-            Quad const quad = LoadFloats<kQuad>(At(src, i) - 1);
-            return Quad{quad[1], quad[2], quad[3], quad[0]};
-        }
     }
     template <class QUADS>
     static void StoreExactly(Elements<float> const &dst, std::ptrdiff_t i, QUADS const &quads) {

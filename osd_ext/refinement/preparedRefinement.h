@@ -2,8 +2,7 @@
 #ifndef OPENSUBDIVHEX_OSD_EXT_REFINEMENT_PREPARED_REFINEMENT_H
 #define OPENSUBDIVHEX_OSD_EXT_REFINEMENT_PREPARED_REFINEMENT_H
 
-#include "tileMap.h"
-
+#include "far_ext/vtr/refinement.h"
 #include "far_ext/vtr/refinementRules.h"
 #include "osd_ext/simd/quad.h"
 
@@ -77,8 +76,11 @@ struct WeightedVertex {
 /// \brief Things in groups, one group behind the other.
 template <class ITEM>
 struct Groups {
-    FarExt::internal::Buffer<ITEM> items;
+    std::vector<ITEM> items;
     std::vector<std::size_t> firsts = {0}; ///< by group, and the number of items
+
+    /// What has been added since the last call is a group.
+    void EndGroup() { firsts.push_back(items.size()); }
 
     int GetNumGroups() const { return int(firsts.size()) - 1; }
     bool IsEmpty() const { return items.empty(); }
@@ -92,52 +94,26 @@ struct IndexRun {
     Far::Index end;
 };
 
-/// \brief A run of plain vertices, and where their corners begin in vertCorners.
-struct VertexRun {
-    Far::Index begin;
-    Far::Index end;
-    std::size_t firstCorner;
-};
-
 /// \brief A refinement prepared for evaluation: all that making the points of its child takes.
-/// Refers to the parent level and to the two levels before it.
+/// Refers to the parent level.
 ///
-/// The faces are grouped into tiles, so that the new points of a tile are still in the cache when
-/// the vertices between its faces are averaged: benchmark table-free, 1.3 times as fast for length
-/// 3, 1.7 times for length 8.  The vertices are in the group of the tile that all their faces are
-/// in; others follow in groups of their own, behind those of the tiles.
-///
-/// Most vertices were made of a corner one or two levels before: they are runs of the faces of
-/// those corners.  Where hexagonal steps made the levels and have no sharp boundary, the numbering
-/// tells where the F-vertices around them are (INDEXING.md).  Else one corner is listed for each,
-/// and for all other vertices the corners around them.  The last vertex of the level is never
-/// plain, nor are its faces of 3 to 6 sides and the vertex whose F-vertex is the last: what plain
-/// faces and vertices read may be read in packets that reach into the element behind.
-///
-/// Groups are done side by side: those of tiles, and behind them those of vertices between tiles.
+/// The groups are faces that follow one another, and vertices that do; the faces are done before the
+/// vertices, and the groups of either side by side.  The last vertex of the level is never plain, nor
+/// are its faces of 3 to 6 sides and the vertex whose F-vertex is the last: what plain faces and vertices
+/// read may be read in packets that reach into the element behind.
 struct PreparedRefinement {
     std::shared_ptr<FarExt::internal::RefinementRules const> rules; ///< null for a truncation
     PlainMasks masks;
-    /// Of the parent, plain faces and hexagons with dense rules, in runs of one size; all of one are F-faces or
-    /// none is.
+    /// Of the parent, plain faces and hexagons with dense rules, in runs of one size.
     Groups<IndexRun> faceRuns;
     Groups<WeightedFace> weightedFaces;
-    /// Of a truncation, all vertices that it makes, in tiles of some each.
+    /// Of a truncation, all vertices that it makes.
     Groups<ListedVertex> listedVertices;
-    /// The faces of the level before the parent whose F-vertices, of all corners, are vertices of the parent,
-    /// and those of the level before that one.
-    Groups<IndexRun> newVertexFaces;
-    Groups<IndexRun> olderVertexFaces;
-    /// The other vertices of the parent.
-    Groups<VertexRun> vertexRuns;
+    Groups<IndexRun> vertexRuns; ///< plain vertices of the parent
     Groups<WeightedVertex> weightedVertices;
 
     Far::Index numVVertices = 0; ///< F-vertices follow in the child
     FarExt::internal::Level const *parent = nullptr;
-    /// The level before the parent, and the one before that; null where they are not there.
-    FarExt::internal::Level const *before = nullptr;
-    FarExt::internal::Level const *beforeThat = nullptr;
-    int numTiles = 0;
 
     std::vector<float> faceWeights;        ///< of weighted faces, those of a rule once
     std::vector<DenseFaceMask> denseMasks; ///< of hexagons, by the number of their rule
@@ -146,27 +122,14 @@ struct PreparedRefinement {
     std::vector<Far::Index> listedSources;
     std::vector<float> listedWeights;
 
-    /// Where the numbering does not tell, by corner of the level before: its F-vertex's corner in
-    /// the E-face of the edge from that corner to the next, side by side with that of the next.
-    FarExt::internal::Buffer<Far::Index> startCorners;
-    FarExt::internal::Buffer<Far::Index> vertCorners; ///< of each vertex of a run, in each face
-
-    int GetNumVertexGroups() const { return vertexRuns.GetNumGroups(); }
+    /// The corners around the vertices of the parent, as Level::vertFaces has their faces; none where
+    /// plain vertices do not average these.
+    FarExt::internal::Buffer<Far::Index> vertCorners;
 };
 
-/// The first faces of a level, which the hexagonal refinement made of faces and whose vertices follow
-/// one another; 0 where it was another.
-Far::Index GetNumFFaces(FarExt::internal::Level const &level);
-
-/// The tiles for levels whose last one to be refined is \p lastParent.
-int GetNumTiles(FarExt::internal::Level const &lastParent);
-
-/// \brief Prepares the last of \p refinements, which lead to it from level 0.
-///
-/// \param tileMap  of its parent
 void PrepareRefinement(std::shared_ptr<FarExt::internal::RefinementRules const> const &rules,
-                       std::vector<FarExt::internal::Refinement const *> const &refinements,
-                       TileMap const &tileMap, PreparedRefinement &prepared);
+                       FarExt::internal::Refinement const &refinement,
+                       PreparedRefinement &prepared);
 
 } // namespace OpenSubdivHex::OsdExt::internal
 
