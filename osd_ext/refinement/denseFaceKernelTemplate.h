@@ -109,8 +109,6 @@ void refineDenseFaces(DenseFaceTask const &task) {
         }
         DenseFaceMask const &mask = task.masks[run->rule];
         for (; corner < end; corner += kSize) {
-            prefetchAhead(verts + corner);
-            prefetchAhead(ACCESS::At(dst, corner));
             refineDenseFace<ACCESS, ROWS>(mask, src, dst, verts + corner, corner);
         }
     }

@@ -13,18 +13,6 @@
 namespace OpenSubdivHex::OsdExt::internal {
 namespace {
 
-// Asks for memory that is read or written soon, one line in each turn of a loop over it: benchmark
-// table-free, large meshes, 1.1 times as fast with it.
-template <class T>
-OPENSUBDIVHEX_INLINE void prefetchAhead([[maybe_unused]] T const *place) {
-#if defined(__GNUC__)
-    constexpr std::uintptr_t kBytesAhead = 4096;
-    // A number, since a pointer may not lead behind the end of its array.
-    __builtin_prefetch(
-        reinterpret_cast<void const *>(reinterpret_cast<std::uintptr_t>(place) + kBytesAhead));
-#endif
-}
-
 // The weights of a plain face, in registers.
 struct PlainFaceQuads {
     explicit PlainFaceQuads(PlainFaceMask const &mask)
@@ -87,8 +75,6 @@ OPENSUBDIVHEX_INLINE void refineUnrolledFaces(PlainFaceQuads const &mask,
                                               Far::Index const *verts, Elements<float> const &dst,
                                               std::ptrdiff_t begin, std::ptrdiff_t end) {
     for (std::ptrdiff_t corner = begin; corner != end; corner += SIZE) {
-        prefetchAhead(verts + corner);
-        prefetchAhead(ACCESS::At(dst, corner));
         refineUnrolledFace<ACCESS, SIZE, HAS_OPPOSITE>(mask, src, verts + corner, dst, corner);
     }
 }
