@@ -238,6 +238,7 @@ LevelTessellation::LevelTessellation(internal::FaceSections const &sections, int
     if (_levels.empty()) {
         // Points on the other edges are made as those of the face, too.
         std::vector<Polyline> ofFace;
+        ofFace.reserve(edges.size());
         for (int edge = 0; edge < size; ++edge) {
             ofFace.push_back(sections.GetEdge(edge));
         }

@@ -84,16 +84,16 @@ public:
         }
         facing.normal = Scale(_sum, 1 / length);
         facing.center = Scale(_sumOfPlaces, 1 / double(_places.size()));
-        double spread = 0;
+        double largest = 0;
         for (Vector3 const &area : _areas) {
             double const height = Dot(facing.normal, area);
             if (!(height > 0)) {
                 return facing;
             }
-            spread =
-                std::max(spread, GetLength(Subtract(area, Scale(facing.normal, height))) / height);
+            largest =
+                std::max(largest, GetLength(Subtract(area, Scale(facing.normal, height))) / height);
         }
-        facing.spread = kFactor * spread;
+        facing.spread = kFactor * largest;
         for (Vector3 const &place : _places) {
             Vector3 const d = Subtract(place, facing.center);
             facing.radius = std::max(facing.radius, kFactor * GetLength(d));
