@@ -110,42 +110,7 @@ LevelTessellation CellForest::GetTessellation(Index face,
     if (GetTree(face).GetFaceSize() != _level.GetLevel().GetFaceSize(face)) {
         return LevelTessellation(Parameterization(), 0);
     }
-    std::vector<int> levels;
-    if (findLevels(face, levels)) {
-        return LevelTessellation(Parameterization(GetTree(face).GetFaceSize()), int(levels.size()),
-                                 levels.data(), options);
-    }
     return LevelTessellation(GetTree(face), GetFacePolylines(face).data(), options);
-}
-
-// Those of the edges and of the inside, where there are such.
-bool CellForest::findLevels(Index face, std::vector<int> &levels) const {
-    static std::vector<Polyline> const kPolylines = [] {
-        std::vector<Polyline> polylines;
-        polylines.reserve(Polyline::kLastLevel + 1);
-        for (int edgeLevel = 0; edgeLevel <= Polyline::kLastLevel; ++edgeLevel) {
-            polylines.emplace_back(edgeLevel);
-        }
-        return polylines;
-    }();
-    Level const &level = _level.GetLevel();
-    CellTree const &tree = GetTree(face);
-    int const inside = tree.GetMaxLevel();
-    levels.clear();
-    for (int local = 0; local < tree.GetFaceSize(); ++local) {
-        // Polylines of levels are the same from both ends.
-        Polyline const &polyline =
-            GetPolyline(level.faceEdges[level.faceFirstCorner[face] + local]);
-        // Levels 0 and 1 give an edge the same.
-        auto const found =
-            std::find(kPolylines.begin() + std::min(inside, 1), kPolylines.end(), polyline);
-        if (found == kPolylines.end()) {
-            return false;
-        }
-        levels.push_back(int(found - kPolylines.begin()));
-    }
-    levels.push_back(inside);
-    return tree.HasLevels(levels.data(), inside);
 }
 
 // Writes what tells the tessellation of a face.

@@ -65,10 +65,7 @@ public:
     Polyline const &GetPolyline(Index edge) const { return _polylines[std::size_t(edge)]; }
     /// Those of the edges of a face, in the direction of the face.
     std::vector<Polyline> GetFacePolylines(Index face) const;
-    /// \brief The tessellation of a face; invalid where not IsMatched().
-    ///
-    /// It is that of levels (LevelTessellation::GetLevels()) where the cells and the polylines of the face are those
-    /// of some, as mostly in flat parts of a mesh: its points are evaluated faster.
+    /// The tessellation of a face; invalid where not IsMatched().
     LevelTessellation
     GetTessellation(Index face,
                     LevelTessellation::Options options = LevelTessellation::Options()) const;
@@ -88,7 +85,6 @@ private:
     friend class View;
 
     bool isReversed(Index face, int local) const;
-    bool findLevels(Index face, std::vector<int> &levels) const;
     void getKey(Index face, std::vector<int> &key) const;
 
     FarExt::TopologyLevel _level;

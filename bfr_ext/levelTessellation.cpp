@@ -236,7 +236,13 @@ LevelTessellation::LevelTessellation(internal::FaceSections const &sections, int
     CellMesh const mesh(tree, edges.data(), shape);
     _levels = sections.GetLevels();
     if (_levels.empty()) {
-        _tree = std::make_shared<Tree>(Tree{tree, std::move(edges), {}, {}});
+        // Points on the other edges are made as those of the face, too.
+        std::vector<Polyline> ofFace;
+        ofFace.reserve(edges.size());
+        for (int edge = 0; edge < size; ++edge) {
+            ofFace.push_back(sections.GetEdge(edge));
+        }
+        _tree = std::make_shared<Tree>(Tree{tree, std::move(edges), findEdgeLevels(ofFace), {}});
     } else {
         _cellPlans = std::make_shared<LazyCellPlans>();
     }

@@ -464,14 +464,14 @@ void Surface<REAL>::evaluateSectionBorder(LevelTessellation const &tessellation,
                 evaluator.EvaluateVertex(edge, result);
                 continue;
             }
-            if (tessellation._tree) {
+            int const level = tessellation.getEdgeLevel(edge);
+            if (level < 0) {
                 LevelTessellation::SectorCoords const &coords =
                     tessellation._places[std::size_t(place)];
                 evaluator.EvaluateKeptPoint(edge, {coords.start, coords.end}, result);
                 continue;
             }
             if (run.edge != evaluatedEdge) {
-                int const level = tessellation._levels[edge];
                 int const numPoints = Polyline(level).GetNumPoints();
                 edgePoints.resize(std::size_t(numPoints) * size);
                 evaluator.EvaluateEdge(edge, level, edgePoints.data(), std::ptrdiff_t(size));

@@ -26,7 +26,8 @@ struct MeshMeasures;
 ///
 /// **Memory** is what Options::SetMaxMemory() says, and three doubles for each vertex of the mesh.  Each
 /// cell that a view asked for takes about 80 bytes; for culling, 80 more.  What has no room is found anew by
-/// each view.
+/// each view.  Besides there are the tessellations of the last PatchStream of a forest, as far as that keeps
+/// them, for those of the next forest.
 ///
 /// One thread at a time may use it; View::MakeForest() has threads of its own.  std::bad_alloc passes
 /// through.

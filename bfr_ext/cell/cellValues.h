@@ -11,7 +11,7 @@ namespace OpenSubdivHex::BfrExt::internal {
 
 /// \brief A cell of a base face with the values of its patch, which are refined from cell to cell.
 ///
-/// CellStencil and CellPattern have what a place is in terms of the control points, once for all faces
+/// CellStencil and PatchEvaluator have what a place is in terms of the control points, once for all cells
 /// of a type.  Trees hardly have places in common, and their cells are met in the order of refinement:
 /// there it is less work to refine values.
 ///

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <cassert>
-#include <cmath>
 
 namespace OpenSubdivHex::BfrExt::internal {
 
@@ -66,17 +65,10 @@ template <typename REAL, std::size_t COUNT, typename FIND, typename GET>
 LeafMatrices<REAL, COUNT> const &getMatrices(PatternOf of, Leaf const &leaf, FIND const &find,
                                              GET const &getRow) {
     int const numSteps = leaf.places.GetNumSteps();
-    using Matrices = LeafMatrices<REAL, COUNT>;
-    auto const look = [&](PatternTable &patterns) -> Matrices const & {
-        return patterns.Get<Matrices>(
-            PatternTable::GetKind<REAL>(of), &numSteps, &numSteps + 1,
-            [&] { return makeMatrices<REAL, COUNT>(leaf, find, getRow); });
-    };
-    return leaf.ringCell
-               ? leaf.ringCell->GetLeaf<REAL, COUNT, Matrices>(
-                     numSteps,
-                     [&]() -> Matrices const & { return look(leaf.ringCell->GetPatterns()); })
-               : look(leaf.type.GetPatterns());
+    PatternTable &patterns = leaf.ringCell ? leaf.ringCell->GetPatterns() : leaf.type.GetPatterns();
+    return patterns.Get<LeafMatrices<REAL, COUNT>>(
+        PatternTable::GetKind<REAL>(of), &numSteps, &numSteps + 1,
+        [&] { return makeMatrices<REAL, COUNT>(leaf, find, getRow); });
 }
 
 template <typename REAL>

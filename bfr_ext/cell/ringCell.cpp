@@ -3,10 +3,8 @@
 
 #include <algorithm>
 #include <cassert>
-#include <cmath>
 #include <numeric>
 #include <optional>
-#include <type_traits>
 
 namespace OpenSubdivHex::BfrExt::internal {
 
@@ -102,38 +100,13 @@ void RingPlaces::Order(std::vector<double> const &weights, std::vector<double> &
 }
 
 template <typename REAL>
-VertexWeights<REAL> const &RingCell::GetVertexWeights(int numFaces) const {
-    constexpr std::size_t kPrecision = sizeof(REAL) == sizeof(double) ? 1 : 0;
-    return _foundWeights.Get<VertexWeights<REAL>>(kPrecision, [&]() -> VertexWeights<REAL> const & {
-        return _patterns.Get<VertexWeights<REAL>>(
-            PatternTable::GetKind<REAL>(PatternOf::VertexWeights), nullptr, nullptr,
-            [&] { return makeVertexWeights<REAL>(numFaces); });
-    });
-}
-
-template <typename REAL>
-VertexWeights<REAL> RingCell::makeVertexWeights(int numFaces) const {
-    constexpr double kTolerance = 1e-12;
-    assert(numFaces > 1);
-    std::vector<double> weights;
-    GetPlaces().Order(_type.GetCornerPoints()[0], weights);
-    VertexWeights<REAL> result = {REAL(weights[0]), {weights.begin() + 1, weights.end()}};
-    std::vector<int> const &places = GetPlaces().GetPlaces();
-    std::size_t const numOfFace = places.size() / std::size_t(numFaces);
-    if (numOfFace == 0 || numOfFace * std::size_t(numFaces) != places.size()) {
-        return result;
-    }
-    int const blockSize = places[numOfFace] - places[0];
-    for (std::size_t i = numOfFace; i < places.size(); ++i) {
-        std::size_t const before = i - numOfFace;
-        if (places[i] != places[before] + blockSize ||
-            std::abs(weights[1 + i] - weights[1 + before]) > kTolerance) {
-            return result;
-        }
-    }
-    result.numOfFace = numOfFace;
-    result.blockSize = std::size_t(blockSize);
-    return result;
+std::vector<REAL> const &RingCell::GetVertexWeights() const {
+    return _patterns.Get<std::vector<REAL>>(
+        PatternTable::GetKind<REAL>(PatternOf::VertexWeights), nullptr, nullptr, [&] {
+            std::vector<double> weights;
+            GetPlaces().Order(_type.GetCornerPoints()[0], weights);
+            return std::vector<REAL>(weights.begin(), weights.end());
+        });
 }
 
 RingKey::RingKey() {
@@ -390,97 +363,37 @@ template <typename REAL>
 void RingValues<REAL>::EvaluateVertex(RingCell const &vVertex, int ring, int firstFace,
                                       REAL *result) {
     Ring const &ofRing = _rings->GetRings()[std::size_t(ring)];
-    int const numFaces = ofRing.GetNumFaces();
-    VertexWeights<REAL> const &weights = vVertex.GetVertexWeights<REAL>(numFaces);
+    std::vector<REAL> const &weights = vVertex.GetVertexWeights<REAL>();
     std::vector<int> const &places = vVertex.GetPlaces().GetPlaces();
+    assert(weights.size() == places.size() + 1);
     RingStep const step = _rings->GetLastStep();
-    // The V-vertex may be that of rings, too, whose last face is of another size.
-    bool const areFacesAlike = weights.numOfFace > 0 && ofRing.faceSizes.AreSame() &&
-                               ofRing.GetBlockSize(0, step) == weights.blockSize;
     _rings->ApplyCenter(ring, firstFace, _controlPoints.data(), _points.data(), _paddedSize,
                         _center.data());
-    REAL const *const blocks = &_points[_rings->GetBlock(ring, 0, step) * _paddedSize];
-    constexpr std::size_t kLanes = Lanes<REAL>::kCount;
-    for (std::size_t lane = 0; lane < _size; lane += kLanes) {
-        Lanes<REAL> const ofCenter = Lanes<REAL>::Load(&_center[lane]) * weights.ofCenter;
-        Lanes<REAL> const sum =
-            areFacesAlike ? addFaces(weights, places, numFaces, firstFace, blocks + lane, ofCenter)
-                          : addPoints(weights, places, ofRing, firstFace, blocks + lane, ofCenter);
-        std::copy_n(sum.values, std::min(kLanes, _size - lane), result + lane);
-    }
-}
-
-// To that of the center, the points of a ring whose faces weigh the same, from one of them on.
-template <typename REAL>
-Lanes<REAL> RingValues<REAL>::addFaces(VertexWeights<REAL> const &weights,
-                                       std::vector<int> const &places, int numFaces, int firstFace,
-                                       REAL const *blocks, Lanes<REAL> sum) const {
-    std::size_t const blockSize = weights.blockSize * _paddedSize;
-    REAL const *const end = blocks + std::size_t(numFaces) * blockSize;
-    REAL const *const first = blocks + std::size_t(firstFace) * blockSize;
-    // Adds so many points of each face.
-    auto const add = [&](auto count, std::size_t point) {
-        Lanes<REAL> ofFaces[count()];
-        auto const load = [&](REAL const *block, std::size_t i) {
-            return Lanes<REAL>::Load(block + std::size_t(places[point + i]) * _paddedSize);
-        };
-        for (std::size_t i = 0; i < count(); ++i) {
-            ofFaces[i] = load(first, i);
-        }
-        REAL const *block = first;
-        for (int face = 1; face < numFaces; ++face) {
-            block += blockSize;
-            if (block == end) {
-                block = blocks;
-            }
-            for (std::size_t i = 0; i < count(); ++i) {
-                ofFaces[i] = ofFaces[i] + load(block, i);
-            }
-        }
-        for (std::size_t i = 0; i < count(); ++i) {
-            sum = sum + ofFaces[i] * weights.ofPoints[point + i];
-        }
-    };
-    constexpr std::integral_constant<std::size_t, 4> kFour; // that do not wait for each other
-    constexpr std::integral_constant<std::size_t, 1> kOne;
-    std::size_t point = 0;
-    for (; point + kFour <= weights.numOfFace; point += kFour) {
-        add(kFour, point);
-    }
-    for (; point < weights.numOfFace; ++point) {
-        add(kOne, point);
-    }
-    return sum;
-}
-
-// The same of points with weights of their own, by their places from the face on.
-template <typename REAL>
-Lanes<REAL> RingValues<REAL>::addPoints(VertexWeights<REAL> const &weights,
-                                        std::vector<int> const &places, Ring const &ring,
-                                        int firstFace, REAL const *blocks,
-                                        Lanes<REAL> const &ofCenter) const {
-    assert(weights.ofPoints.size() == places.size());
-    RingStep const step = _rings->GetLastStep();
-    std::size_t const first = ring.GetOffset(firstFace, step);
-    std::size_t const numPoints = ring.GetOffset(ring.GetNumFaces(), step);
+    std::size_t const first = ofRing.GetOffset(firstFace, step);
+    std::size_t const numPoints = ofRing.GetOffset(ofRing.GetNumFaces(), step);
     constexpr std::size_t kNumSums = 4; // that do not wait for each other
     std::size_t const numInFours = places.size() / kNumSums * kNumSums;
-    Lanes<REAL> sums[kNumSums] = {ofCenter};
-    auto const add = [&](std::size_t k, Lanes<REAL> &sum) {
-        std::size_t const place = first + std::size_t(places[k]);
-        REAL const *const point =
-            blocks + (place < numPoints ? place : place - numPoints) * _paddedSize;
-        sum = sum + Lanes<REAL>::Load(point) * weights.ofPoints[k];
-    };
-    for (std::size_t k = 0; k < numInFours; k += kNumSums) {
-        for (std::size_t i = 0; i < kNumSums; ++i) {
-            add(k + i, sums[i]);
+    constexpr std::size_t kLanes = Lanes<REAL>::kCount;
+    for (std::size_t lane = 0; lane < _size; lane += kLanes) {
+        REAL const *const blocks = &_points[_rings->GetBlock(ring, 0, step) * _paddedSize] + lane;
+        Lanes<REAL> sums[kNumSums] = {Lanes<REAL>::Load(&_center[lane]) * weights[0]};
+        auto const add = [&](std::size_t k, Lanes<REAL> &sum) {
+            std::size_t const place = first + std::size_t(places[k]);
+            REAL const *const point =
+                blocks + (place < numPoints ? place : place - numPoints) * _paddedSize;
+            sum = sum + Lanes<REAL>::Load(point) * weights[1 + k];
+        };
+        for (std::size_t k = 0; k < numInFours; k += kNumSums) {
+            for (std::size_t i = 0; i < kNumSums; ++i) {
+                add(k + i, sums[i]);
+            }
         }
+        for (std::size_t k = numInFours; k < places.size(); ++k) {
+            add(k, sums[k - numInFours]);
+        }
+        Lanes<REAL> const sum = (sums[0] + sums[1]) + (sums[2] + sums[3]);
+        std::copy_n(sum.values, std::min(kLanes, _size - lane), result + lane);
     }
-    for (std::size_t k = numInFours; k < places.size(); ++k) {
-        add(k, sums[k - numInFours]);
-    }
-    return (sums[0] + sums[1]) + (sums[2] + sums[3]);
 }
 
 template class RingValues<float>;

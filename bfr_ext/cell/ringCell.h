@@ -74,20 +74,6 @@ private:
     std::vector<std::size_t> _ends; // by ring, of columns
 };
 
-/// \brief The weights of the surface at a V-vertex, by column.
-///
-/// Around most vertices all faces weigh the same, and so the points of all faces are added up first that are at the
-/// same place of their blocks.
-template <typename REAL>
-struct VertexWeights {
-    REAL ofCenter;
-    std::vector<REAL> ofPoints; ///< behind the center
-    /// Where faces weigh the same: how many of the points are one face's; else 0.
-    std::size_t numOfFace = 0;
-    /// The points of each face but the last, then.
-    std::size_t blockSize = 0;
-};
-
 /// \brief What the first step makes of a plain base face: one of its cells, or the long edge of one of its
 /// edges, or one of its V-vertices, the points of which are points of rings.
 ///
@@ -126,40 +112,20 @@ public:
     std::vector<int> const &GetColumns() const { return GetPlaces().GetColumns(); }
     /// The points of the type.
     RingPlaces const &GetPoints() const { return _points; }
-    /// Those of a V-vertex, around which there are so many faces, as the cell tells.
+    /// The weights of the surface at a V-vertex, by column.
     template <typename REAL>
-    VertexWeights<REAL> const &GetVertexWeights(int numFaces) const;
+    std::vector<REAL> const &GetVertexWeights() const;
 
     /// What has been made of it.
     PatternTable &GetPatterns() const { return _patterns; }
-    /// \brief What PatternTable::Get() gives for leaves of some steps, with COUNT matrices: all faces ask for it.
-    ///
-    /// \param find  gives it where nobody has asked for it yet
-    template <typename REAL, std::size_t COUNT, typename LEAF, typename FIND>
-    LEAF const &GetLeaf(int numSteps, FIND const &find) const {
-        static_assert(COUNT == 1 || COUNT == 2);
-        constexpr std::size_t kPrecision = sizeof(REAL) == sizeof(double) ? 1 : 0;
-        return numSteps < kEndOfFoundSteps
-                   ? _foundLeaves.Get<LEAF>(
-                         (std::size_t(numSteps) * 2 + COUNT - 1) * 2 + kPrecision, find)
-                   : find();
-    }
 
 private:
-    template <typename REAL>
-    VertexWeights<REAL> makeVertexWeights(int numFaces) const;
-
-    static constexpr int kEndOfFoundSteps = 5; // leaves have fewer
-
     CellType const &_type;
     RingStep const _lastStep;
     bool const _isInner;
     RingPlaces const _points;
     RingPlaces const _inner;
     mutable PatternTable _patterns;
-    mutable FoundPatterns<2 * 2 * kEndOfFoundSteps>
-        _foundLeaves;                       // by steps, matrices and precision
-    mutable FoundPatterns<2> _foundWeights; // by precision
 };
 
 /// \brief What tells the cells that rings make: the sizes of faces, and the vertices, by when they occur first.
@@ -358,12 +324,6 @@ public:
     void EvaluateVertex(RingCell const &vVertex, int ring, int firstFace, REAL *result);
 
 private:
-    Lanes<REAL> addFaces(VertexWeights<REAL> const &weights, std::vector<int> const &places,
-                         int numFaces, int firstFace, REAL const *blocks, Lanes<REAL> sum) const;
-    Lanes<REAL> addPoints(VertexWeights<REAL> const &weights, std::vector<int> const &places,
-                          Ring const &ring, int firstFace, REAL const *blocks,
-                          Lanes<REAL> const &ofCenter) const;
-
     VertexRings const *_rings = nullptr;
     std::size_t _size = 0;
     std::size_t _paddedSize = 0;

@@ -34,14 +34,10 @@ struct PlanOptions {
 struct PatchPlan {
     PatchPlan(std::vector<int> const &levels, PlanOptions const &options)
         : tessellation(Parameterization(int(levels.size()) - 1), int(levels.size()), levels.data(),
-                       options.tessellation),
-          hasDerivatives(options.hasDerivatives) {}
+                       options.tessellation) {}
     PatchPlan(FaceSections const &sections, int section, PlanOptions const &options)
-        : tessellation(sections, section, options.tessellation),
-          hasDerivatives(options.hasDerivatives) {}
-
-    PatchPlan(LevelTessellation ofFace, PlanOptions const &options)
-        : tessellation(std::move(ofFace)), hasDerivatives(options.hasDerivatives) {}
+        : tessellation(sections, section, options.tessellation) {}
+    explicit PatchPlan(LevelTessellation ofFace) : tessellation(std::move(ofFace)) {}
 
     /// \brief About what it takes in memory to make the plan of some levels, with the plan itself.
     ///
@@ -63,14 +59,14 @@ struct PatchPlan {
         return kBytesOfCoord + 8 * sizeof(int) + 2 * sizeof(int) + (hasDerivatives ? 300 : 160);
     }
 
+    /// What it has besides, and what the heap keeps of its arrays.
+    static constexpr std::size_t kBytesOfPlan = 2048;
+
     LevelTessellation const tessellation;
-    bool const hasDerivatives;
 
 private:
     // Its place, and its u and v.
     static constexpr std::size_t kBytesOfCoord = sizeof(LeafPlaces::Place) + 2 * sizeof(double);
-    // What it has besides arrays of its own, and what the heap keeps of these.
-    static constexpr std::size_t kBytesOfPlan = 2048;
 };
 
 /// \brief The plans that have been asked for.  Where they come to take too much memory, those that nobody
@@ -130,9 +126,10 @@ public:
                 return plan;
             }
         }
-        auto plan = std::make_shared<PatchPlan const>(makeTessellation(), _options);
-        std::size_t const size = std::size_t(plan->tessellation.GetNumCoords()) *
-                                 PatchPlan::GetBytesOfPlace(_options.hasDerivatives);
+        auto plan = std::make_shared<PatchPlan const>(makeTessellation());
+        std::size_t const size =
+            PatchPlan::kBytesOfPlan + std::size_t(plan->tessellation.GetNumCoords()) *
+                                          PatchPlan::GetBytesOfPlace(_options.hasDerivatives);
         std::lock_guard<std::mutex> const lock(_mutex);
         if (std::shared_ptr<PatchPlan const> other = look(key)) {
             return other;

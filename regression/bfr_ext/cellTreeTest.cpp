@@ -38,21 +38,6 @@ LevelTessellation::Options getPolygonOptions(int facetSize) {
     return LevelTessellation::Options().SetFacetSize(facetSize);
 }
 
-/// Where facets lie, whatever the order of places and facets.
-std::multiset<std::set<std::pair<double, double>>> getFacetPlaces(LevelTessellation const &t) {
-    std::vector<double> coords(2 * std::size_t(t.GetNumCoords()));
-    t.GetCoords(coords.data());
-    std::multiset<std::set<std::pair<double, double>>> facets;
-    for (std::vector<int> const &facet : GetFacets(t)) {
-        std::set<std::pair<double, double>> places;
-        for (int const vert : facet) {
-            places.emplace(coords[2 * std::size_t(vert)], coords[2 * std::size_t(vert) + 1]);
-        }
-        facets.insert(std::move(places));
-    }
-    return facets;
-}
-
 /// All facets of a forest, whose vertices are numbers of points.
 struct ForestMesh {
     ForestMesh(CellForest const &forest, std::vector<bool> const &hasFace, int facetSize) {
@@ -344,41 +329,6 @@ void expectReference(Shape const &shape, unsigned seed) {
 }
 
 } // namespace
-
-// Beside neighbours with other levels, or with a tree that has none.
-TEST(CellForest, TreesOfLevelsHaveTheirTessellation) {
-    auto const refiner = CreateRefiner(GetShape("cube"), ReferenceMask::Smooth, 0, {});
-    CellForest forest(*refiner);
-    for (int face = 0; face < 6; ++face) {
-        forest.SetTree(face, CellTree(4, face == 3 ? 3 : 2));
-    }
-    CellTree partly(4, 2);
-    for (int cell = 0; cell < 2; ++cell) {
-        partly.Refine(partly.GetNumCells() - 1);
-    }
-    ASSERT_FALSE(partly.HasLevels(std::vector<int>(4, 2).data(), 2));
-    forest.SetTree(5, partly);
-    forest.MatchEdges();
-    int numOfLevels = 0;
-    for (int face = 0; face < 6; ++face) {
-        LevelTessellation const found = forest.GetTessellation(face, getPolygonOptions(0));
-        LevelTessellation const ofTree(forest.GetTree(face), forest.GetFacePolylines(face).data(),
-                                       getPolygonOptions(0));
-        EXPECT_EQ(getFacetPlaces(found), getFacetPlaces(ofTree)) << "face " << face;
-        std::vector<int> levels(5);
-        if (found.GetLevels(levels.data()) == 0) {
-            continue;
-        }
-        ++numOfLevels;
-        EXPECT_EQ(levels[4], face == 3 ? 3 : 2);
-        for (int edge = 0; edge < 4; ++edge) {
-            EXPECT_EQ(Polyline(levels[std::size_t(edge)]),
-                      forest.GetFacePolylines(face)[std::size_t(edge)]);
-        }
-    }
-    EXPECT_GE(numOfLevels, 4);
-    EXPECT_EQ(forest.GetTessellation(5).GetLevels(nullptr), 0);
-}
 
 TEST(CellForest, PolygonsAreThoseOfTheReference) {
     for (Shape const &shape : GetManifoldShapes()) {

@@ -20,6 +20,7 @@
 namespace OpenSubdivHex::Regression::sectionTest {
 
 using BfrExt::CellForest;
+using BfrExt::CellTree;
 using BfrExt::LevelTessellation;
 using BfrExt::PatchStream;
 using BfrExt::SurfaceFactory;
@@ -202,11 +203,16 @@ void expectShape(Shape const &shape, ReferenceMask mask, int level, int facetSiz
             shape, *factory, facetSize, hasDerivatives,
             [&](Options const &options) { return Stream(*factory, levels.Get(), options); });
     }
-    CellForest forest = MakeRandomForest(*refiner, 5);
-    forest.SetTree(0, MakeLargeTree(forest.GetTree(0).GetFaceSize(), 11));
-    forest.MatchEdges();
-    expectSections<REAL>(shape, *factory, facetSize, hasDerivatives,
-                         [&](Options const &options) { return Stream(*factory, forest, options); });
+    // Edges of the second tree have the points of a level.
+    int const size = base.GetFaceVertices(0).size();
+    for (CellTree const &tree : {MakeLargeTree(size, 11), CellTree(size, level)}) {
+        CellForest forest = MakeRandomForest(*refiner, 5);
+        forest.SetTree(0, tree);
+        forest.MatchEdges();
+        expectSections<REAL>(
+            shape, *factory, facetSize, hasDerivatives,
+            [&](Options const &options) { return Stream(*factory, forest, options); });
+    }
 }
 
 } // namespace
