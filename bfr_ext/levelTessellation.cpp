@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "levelTessellation.h"
 
+#include "cell/bfrPlace.h"
 #include "cell/cellPlan.h"
 #include "cell/cellStencil.h"
 #include "cell/faceSections.h"
@@ -355,7 +356,26 @@ std::vector<int> LevelTessellation::setPlaces(CellMesh const &mesh, std::vector<
     if (_tree) {
         sortByCell(_tree->corners);
     }
+    if (_parameterization.HasSubFaces()) {
+        _bfrPlaces = std::make_shared<LazyBfrPlaces>();
+    }
     return places;
+}
+
+struct LevelTessellation::LazyBfrPlaces {
+    std::once_flag once;
+    std::vector<internal::BfrPlace> places;
+};
+
+std::vector<internal::BfrPlace> const &LevelTessellation::getBfrPlaces() const {
+    std::call_once(_bfrPlaces->once, [&] {
+        _bfrPlaces->places.reserve(_places.size());
+        for (std::size_t i = 0; i < _places.size(); ++i) {
+            _bfrPlaces->places.push_back(
+                internal::FindBfrPlace(_parameterization, {_coords[2 * i], _coords[2 * i + 1]}, 0));
+        }
+    });
+    return _bfrPlaces->places;
 }
 
 void LevelTessellation::sortByCell(std::vector<CellCorner> &corners) {

@@ -12,6 +12,7 @@
 namespace OpenSubdivHex::BfrExt {
 
 namespace internal {
+struct BfrPlace;
 class CellMesh;
 class CellPlan;
 class FaceSections;
@@ -266,6 +267,9 @@ private:
     // Which cells the places inside lie in, made when it is first asked for; of levels, and of trees that
     // are not large.
     struct LazyCellPlans;
+    // Those of all places in a face with sub-faces, made when derivatives are first asked for.
+    struct LazyBfrPlaces;
+    std::vector<internal::BfrPlace> const &getBfrPlaces() const;
     internal::CellPlan const &getCellPlan(bool isInLattice, bool isOfDerivatives = false) const;
     int getLevelOfPlaces(bool isOfDerivatives) const;
     // The places that are corners of the cells that CellStencil has their derivatives from, which with
@@ -305,6 +309,7 @@ private:
     std::shared_ptr<Tree> _tree;               // null of levels
     std::shared_ptr<Section> _section;         // null of a face
     std::shared_ptr<LazyCellPlans> _cellPlans; // null of a large tree and of its sections
+    std::shared_ptr<LazyBfrPlaces> _bfrPlaces; // null of a face without sub-faces
     std::vector<double> _coords;               // two of each place
     std::vector<SectorCoords> _places;         // the same, exactly
     std::vector<int> _firstEdgeCoords;   // by edge, the place of its first vertex; then their end

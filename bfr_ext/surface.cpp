@@ -259,12 +259,9 @@ void Surface<REAL>::turnDerivatives(LevelTessellation const &tessellation, std::
     if (!_parameterization.HasSubFaces()) {
         return;
     }
-    for (std::size_t i = 0; i < tessellation._places.size(); ++i) {
-        internal::BfrPlace const place = internal::FindBfrPlace(
-            _parameterization, {tessellation._coords[2 * i], tessellation._coords[2 * i + 1]}, 0);
-        auto const at = [&](std::size_t kind) {
-            return derivatives[kind] + std::ptrdiff_t(i) * resultDesc.stride;
-        };
+    std::ptrdiff_t result = 0;
+    for (internal::BfrPlace const &place : tessellation.getBfrPlaces()) {
+        auto const at = [&](std::size_t kind) { return derivatives[kind] + result; };
         REAL *const first[2] = {at(0), at(1)};
         if (derivatives[2]) {
             REAL *const second[3] = {at(2), at(3), at(4)};
@@ -272,6 +269,7 @@ void Surface<REAL>::turnDerivatives(LevelTessellation const &tessellation, std::
         } else {
             internal::ToUv<REAL>(place, size, first, nullptr);
         }
+        result += resultDesc.stride;
     }
 }
 

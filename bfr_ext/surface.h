@@ -291,7 +291,9 @@ private:
         _patchLevel = patchLevel;
         _numControlPoints = numControlPoints;
         _keptPoints = keptPoints;
-        _parameterization = Parameterization(size);
+        if (_parameterization.GetFaceSize() != size) { // mostly that of the face before
+            _parameterization = Parameterization(size);
+        }
     }
     // Has what evaluates it brought to the cache, while control points are gathered.
     void prefetch() const;

@@ -17,6 +17,11 @@ BfrPlace makePlace(BasePoint const &point, PlanePlace const &place) {
 
 BfrPlace FindBfrPlace(Bfr::Parameterization const &parameterization, Pair const &uv,
                       double tolerance) {
+    if (!parameterization.HasSubFaces()) { // by far the most
+        return {FindBasePoint(parameterization.GetFaceSize(), uv[0], uv[1], tolerance),
+                {{1, 0}, {0, 1}},
+                {0, 0}};
+    }
     // What is none lies in no sub-face.
     bool const isNone = std::isnan(uv[0]) || std::isnan(uv[1]);
     PlanePlace const place =

@@ -13,23 +13,39 @@ Bfr::Parameterization MakeFaceParameterization(int size) {
     return {size == 3 ? OpenSubdiv::Sdc::SCHEME_LOOP : OpenSubdiv::Sdc::SCHEME_CATMARK, size};
 }
 
-PlanePlace FindInPlane(Bfr::Parameterization const &parameterization, Pair const &uv) {
-    if (!parameterization.HasSubFaces()) {
-        return {uv, {1, 0}, {0, 1}, {0, 0}};
+namespace {
+
+// The plane of a face of a common size: places are found in it by the million.
+class KnownPolygon {
+public:
+    static constexpr int kMaxSize = 8;
+
+    static KnownPolygon const &Get(int size) {
+        static KnownPolygon const kAll[] = {KnownPolygon(5), KnownPolygon(6), KnownPolygon(7),
+                                            KnownPolygon(8)};
+        return kAll[size - 5];
     }
-    BasePolygon const polygon(parameterization.GetFaceSize());
-    int const size = polygon.GetSize();
-    // Bfr converts coordinates to integers, and has tiles up to the size of the face.
-    double const farthest = size;
-    Pair const nearUv = {std::clamp(uv[0], -farthest, farthest),
-                         std::clamp(uv[1], -farthest, farthest)};
-    Pair subUv;
-    int const subFace =
-        parameterization.ConvertCoordToNormalizedSubFace(nearUv.data(), subUv.data());
-    double const s = std::clamp(subUv[0], 0.0, 1.0);
-    double const t = std::clamp(subUv[1], 0.0, 1.0);
+
+    Pair const &GetCenter() const { return _center; }
+    Pair const &GetCorner(int i) const { return _corners[i % _size]; }
+
+private:
+    explicit KnownPolygon(int size) : _size(size), _center(BasePolygon(size).GetCenter()) {
+        for (int i = 0; i < size; ++i) {
+            _corners[i] = BasePolygon(size).GetCorner(i);
+        }
+    }
+
+    int _size;
+    Pair _center;
+    Pair _corners[kMaxSize] = {};
+};
+
+// The place in a sub-face, with (s, t) from 0 to 1.
+template <typename POLYGON>
+PlanePlace findInSubFace(POLYGON const &polygon, int size, int subFace, double s, double t) {
     // From the centre of the polygon.
-    Pair const corner = polygon.GetCorner(subFace);
+    Pair const corner = polygon.GetCorner(subFace % size);
     Pair const next = polygon.GetCorner((subFace + 1) % size);
     Pair const previous = polygon.GetCorner((subFace + size - 1) % size);
     constexpr double kNormalization = 2; // sub-faces have half the width of a tile
@@ -44,6 +60,27 @@ PlanePlace FindInPlane(Bfr::Parameterization const &parameterization, Pair const
         place.byUv[i] = kNormalization * kNormalization * (corner[i] - behind - before);
     }
     return place;
+}
+
+} // namespace
+
+PlanePlace FindInPlane(Bfr::Parameterization const &parameterization, Pair const &uv) {
+    if (!parameterization.HasSubFaces()) {
+        return {uv, {1, 0}, {0, 1}, {0, 0}};
+    }
+    int const size = parameterization.GetFaceSize();
+    // Bfr converts coordinates to integers, and has tiles up to the size of the face.
+    double const farthest = size;
+    Pair const nearUv = {std::clamp(uv[0], -farthest, farthest),
+                         std::clamp(uv[1], -farthest, farthest)};
+    Pair subUv;
+    int const subFace =
+        parameterization.ConvertCoordToNormalizedSubFace(nearUv.data(), subUv.data());
+    double const s = std::clamp(subUv[0], 0.0, 1.0);
+    double const t = std::clamp(subUv[1], 0.0, 1.0);
+    return 5 <= size && size <= KnownPolygon::kMaxSize
+               ? findInSubFace(KnownPolygon::Get(size), size, subFace, s, t)
+               : findInSubFace(BasePolygon(size), size, subFace, s, t);
 }
 
 template <typename REAL>
