@@ -26,15 +26,6 @@ bool CellTree::isToRefine(int cell, int const edgeLevels[], int level) const {
     return GetLevel(cell) < (isOnEdge ? std::min(level, edgeLevels[GetEdge(cell)]) : level);
 }
 
-bool CellTree::HasLevels(int const edgeLevels[], int level) const {
-    for (int cell = 0; cell < GetNumCells(); ++cell) {
-        if (IsRefined(cell) != isToRefine(cell, edgeLevels, level)) {
-            return false;
-        }
-    }
-    return true;
-}
-
 int CellTree::GetMaxLevel() const {
     return std::max_element(_cells.begin(), _cells.end(),
                             [](Cell const &a, Cell const &b) { return a.level < b.level; })

@@ -39,9 +39,6 @@ public:
     /// \param level       of the inside
     CellTree(int faceSize, int const edgeLevels[], int level);
 
-    /// Whether it has the cells of CellTree(GetFaceSize(), edgeLevels, level), whatever their numbers.
-    bool HasLevels(int const edgeLevels[], int level) const;
-
     /// Vertices of the face.
     int GetFaceSize() const { return _faceSize; }
     /// All cells, with those that are refined.

@@ -194,30 +194,6 @@ TEST(CellTree, RefinesWhatItIsAskedTo) {
     }
 }
 
-// In whatever order they were refined.
-TEST(CellTree, KnowsTheLevelsThatItHas) {
-    std::vector<int> const edgeLevels = {1, 4, 2, 3};
-    CellTree const levels(4, edgeLevels.data(), 3);
-    CellTree tree(4);
-    auto const copy = [&](auto const &self, int from, int to) -> void {
-        if (levels.IsRefined(from)) {
-            int const first = tree.Refine(to);
-            for (int i = levels.GetNumChildren(from) - 1; i >= 0; --i) {
-                self(self, levels.GetFirstChild(from) + i, first + i);
-            }
-        }
-    };
-    copy(copy, 0, 0);
-    for (CellTree const &same : {levels, tree}) {
-        EXPECT_TRUE(same.HasLevels(edgeLevels.data(), 3));
-        EXPECT_FALSE(same.HasLevels(edgeLevels.data(), 4));
-        EXPECT_FALSE(same.HasLevels(std::vector<int>{1, 4, 2, 2}.data(), 3));
-        EXPECT_FALSE(same.HasLevels(std::vector<int>{3, 4, 2, 3}.data(), 3));
-    }
-    tree.Refine(tree.GetNumCells() - 1);
-    EXPECT_FALSE(tree.HasLevels(edgeLevels.data(), 3));
-}
-
 TEST(CellTree, TessellationsNeedAllPointsOfTheTree) {
     CellTree const tree(4, 3);
     std::vector<Polyline> edges(4, Polyline(3));
