@@ -442,9 +442,8 @@ void LimitPatchGatherer::AddSignature(LimitPatch &patch) {
         signature.insert(signature.end(), {sharp.vert, first, second});
     }
     for (SectorCorner const &sector : patch.sectorCorners) {
-        signature.insert(signature.end(),
-                         {sector.corner, getBits(sector.sectorSize), getBits(sector.weight),
-                          int(sector.kind)});
+        signature.insert(signature.end(), {sector.corner, getBits(sector.sectorSize),
+                                           getBits(sector.weight), int(sector.kind)});
     }
     signature.push_back(int(patch.sharpEnds.size()));
     for (SharpEnd const &end : patch.sharpEnds) {

@@ -119,9 +119,9 @@ int main() {
         std::vector<int> rates = findEdgeNumbers(base, face, faceRates);
         rates.push_back(faceRates[face]);
         std::printf("face %d, rate %d:\n", face, faceRates[face]);
-        ofRates.Add(surface, cube.positions,
-                    Bfr::Tessellation(surface.GetParameterization(), int(rates.size()),
-                                      rates.data()));
+        ofRates.Add(
+            surface, cube.positions,
+            Bfr::Tessellation(surface.GetParameterization(), int(rates.size()), rates.data()));
 
         std::vector<int> levels = findEdgeNumbers(base, face, faceLevels);
         levels.push_back(faceLevels[face]);
