@@ -346,8 +346,9 @@ std::vector<int> LevelTessellation::setPlaces(CellMesh const &mesh, std::vector<
         places[std::size_t(order[place])] = int(place);
         double const start = std::ldexp(double(vert.a), -internal::CellShape::kBits);
         double const end = std::ldexp(double(vert.b), -internal::CellShape::kBits);
-        FarExt::internal::WriteFaceCoords(GetFaceSize(), vert.sector, {start, end},
-                                          &_coords[2 * place]);
+        internal::Pair const coords =
+            FarExt::internal::FindFaceCoords(GetFaceSize(), vert.sector, {start, end});
+        std::copy(coords.begin(), coords.end(), &_coords[2 * place]);
         _places.push_back({vert.sector, start, end});
         if (_tree && vert.cell >= 0) {
             _tree->corners.push_back({vert.cell, vert.corner, int(place)});

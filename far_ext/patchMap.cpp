@@ -314,12 +314,12 @@ auto PatchMap::FindPlace(Index face, double u, double v) const -> Place {
 void PatchMap::GetFacePlace(Place const &place, double *u, double *v) const {
     Point const point = evaluate(GetCoords(place.patch), place.s, place.t);
     int const size = _faceSizes[std::size_t(GetFace(place.patch))];
-    double uv[2] = {point.u, point.v};
+    std::array<double, 2> uv = {point.u, point.v};
     if (internal::MakeFaceParameterization(size).HasSubFaces()) {
         int sector = 0;
         internal::SectorPoint const inSector =
             findSectorPoint(internal::BasePolygon(size), point, sector);
-        internal::WriteFaceCoords(size, sector, inSector, uv);
+        uv = internal::FindFaceCoords(size, sector, inSector);
     }
     *u = uv[0];
     *v = uv[1];

@@ -109,7 +109,9 @@ bool FindBaseCoords(MeshLevels const &mesh, int baseDepth, int depth, Cell cell,
         if (coordsOf == CoordsOf::Plane) {
             BasePolygon(size).Write(sector, point, at);
         } else {
-            WriteFaceCoords(size, sector, point, at);
+            BasePolygon::Pair const coords = FindFaceCoords(size, sector, point);
+            at[0] = REAL(coords[0]);
+            at[1] = REAL(coords[1]);
         }
     };
     if (placed.sector < 0) {

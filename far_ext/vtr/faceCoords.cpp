@@ -83,12 +83,12 @@ PlanePlace FindInPlane(Bfr::Parameterization const &parameterization, Pair const
                : findInSubFace(BasePolygon(size), size, subFace, s, t);
 }
 
-template <typename REAL>
-void WriteFaceCoords(int size, int sector, SectorPoint point, REAL *uv) {
+Pair FindFaceCoords(int size, int sector, SectorPoint point) {
     Bfr::Parameterization const parameterization = MakeFaceParameterization(size);
     if (!parameterization.HasSubFaces()) {
-        BasePolygon(size).Write(sector, point, uv);
-        return;
+        Pair uv;
+        BasePolygon(size).Write(sector, point, uv.data());
+        return uv;
     }
     auto const [a, b] = point;
     Pair found;
@@ -120,11 +120,7 @@ void WriteFaceCoords(int size, int sector, SectorPoint point, REAL *uv) {
         parameterization.ConvertNormalizedSubFaceToCoord(isAtStart ? sector : (sector + 1) % size,
                                                          subUv.data(), found.data());
     }
-    uv[0] = REAL(found[0]);
-    uv[1] = REAL(found[1]);
+    return found;
 }
-
-template void WriteFaceCoords(int, int, SectorPoint, float *);
-template void WriteFaceCoords(int, int, SectorPoint, double *);
 
 } // namespace OpenSubdivHex::FarExt::internal

@@ -34,11 +34,10 @@ struct PlanePlace {
 OPENSUBDIVHEX_API PlanePlace FindInPlane(OpenSubdiv::Bfr::Parameterization const &parameterization,
                                          BasePolygon::Pair const &uv);
 
-/// \brief Writes u and v of a point of a face of \p size vertices, which has a parameterization.
+/// \brief The u and v of a point of a face of \p size vertices.
 ///
 /// Between two sub-faces it is in the second, but the centre is in that of corner 0.
-template <typename REAL>
-void WriteFaceCoords(int size, int sector, SectorPoint point, REAL *uv);
+OPENSUBDIVHEX_API BasePolygon::Pair FindFaceCoords(int size, int sector, SectorPoint point);
 
 } // namespace OpenSubdivHex::FarExt::internal
 

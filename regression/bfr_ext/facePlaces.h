@@ -17,9 +17,7 @@ using FacePlace = std::array<double, 2>;
 
 /// (u, v) of the place that is so far from the centre of a face towards the start and the end of an edge.
 inline FacePlace MakeFacePlace(int faceSize, int edge, double toStart, double toEnd) {
-    FacePlace uv;
-    FarExt::internal::WriteFaceCoords(faceSize, edge, {toStart, toEnd}, uv.data());
-    return uv;
+    return FarExt::internal::FindFaceCoords(faceSize, edge, {toStart, toEnd});
 }
 
 /// Those of a place in the plane of the face, which is inside.

@@ -7,7 +7,7 @@
 set(called AllocateArray FreeArray PrepareArray RangeQueue ForEachRange Report InsertUnique SortUnique
   RefinementRules GetRules FaceRule TruncationMask PrimvarRows PrimvarLimitRows
   LimitRows CheckLimitLevel LimitOrigins LatticePatch LatticeFaces PlainFaces
-  RegularFaces
+  RegularFaces MakeFaceParameterization FindInPlane FindFaceCoords FindCellPatchPoints
   FindUniformSources GetStepsToLimit GatherBaseCell FindBaseCellTurns GatherBorder RefineCell
   UseNextMasks ComesApart GatherFanItems FindCornerLimits PatchRefinement GetVertexMarks StepRowBack MakePlainBaseCell IndexMap
   Device MakeDeviceLimit MakeDeviceRefinements
