@@ -4,10 +4,10 @@
 #ifndef OPENSUBDIVHEX_REGRESSION_BFR_EXT_FACE_PLACES_H
 #define OPENSUBDIVHEX_REGRESSION_BFR_EXT_FACE_PLACES_H
 
-#include "bfr_ext/cell/cellStencil.h"
 #include "bfr_ext/parameterization.h"
 #include "far_ext/vtr/faceCoords.h"
 
+#include <algorithm>
 #include <array>
 #include <vector>
 
@@ -20,16 +20,33 @@ inline FacePlace MakeFacePlace(int faceSize, int edge, double toStart, double to
     return FarExt::internal::FindFaceCoords(faceSize, edge, {toStart, toEnd});
 }
 
-/// Those of a place in the plane of the face, which is inside.
-inline FacePlace FromPlane(int faceSize, FacePlace const &coords) {
-    BfrExt::internal::BasePoint const point =
-        BfrExt::internal::FindBasePoint(faceSize, coords[0], coords[1], 0);
-    return MakeFacePlace(faceSize, point.sector, point.coords[0], point.coords[1]);
-}
-
 /// The place in the plane of the face of (u, v).
 inline FacePlace ToPlane(int faceSize, double const uv[2]) {
     return FarExt::internal::FindInPlane(BfrExt::Parameterization(faceSize), {uv[0], uv[1]}).coords;
+}
+
+/// (u, v) of a place in the plane of the face, which is inside.
+inline FacePlace FromPlane(int faceSize, FacePlace const &coords) {
+    auto const getCorner = [&](int corner) {
+        return ToPlane(faceSize, MakeFacePlace(faceSize, corner % faceSize, 1, 0).data());
+    };
+    FacePlace const center = FarExt::internal::BasePolygon(faceSize).GetCenter();
+    auto const cross = [&](FacePlace const &a, FacePlace const &b) {
+        return (a[0] - center[0]) * (b[1] - center[1]) - (a[1] - center[1]) * (b[0] - center[0]);
+    };
+    int best = 0;
+    FacePlace inBest = {};
+    for (int edge = 0; edge < faceSize; ++edge) {
+        FacePlace const start = getCorner(edge);
+        FacePlace const end = getCorner(edge + 1);
+        double const whole = cross(start, end);
+        FacePlace const inSector = {cross(coords, end) / whole, cross(start, coords) / whole};
+        if (edge == 0 || std::min(inSector[0], inSector[1]) > std::min(inBest[0], inBest[1])) {
+            best = edge;
+            inBest = inSector;
+        }
+    }
+    return MakeFacePlace(faceSize, best, std::max(inBest[0], 0.0), std::max(inBest[1], 0.0));
 }
 
 /// The same of many.
