@@ -27,16 +27,15 @@ public:
     }
 
     Pair const &GetCenter() const { return _center; }
-    Pair const &GetCorner(int i) const { return _corners[i % _size]; }
+    Pair const &GetCorner(int i) const { return _corners[i]; }
 
 private:
-    explicit KnownPolygon(int size) : _size(size), _center(BasePolygon(size).GetCenter()) {
+    explicit KnownPolygon(int size) : _center(BasePolygon(size).GetCenter()) {
         for (int i = 0; i < size; ++i) {
             _corners[i] = BasePolygon(size).GetCorner(i);
         }
     }
 
-    int _size;
     Pair _center;
     Pair _corners[kMaxSize] = {};
 };
@@ -45,7 +44,7 @@ private:
 template <typename POLYGON>
 PlanePlace findInSubFace(POLYGON const &polygon, int size, int subFace, double s, double t) {
     // From the centre of the polygon.
-    Pair const corner = polygon.GetCorner(subFace % size);
+    Pair const corner = polygon.GetCorner(subFace);
     Pair const next = polygon.GetCorner((subFace + 1) % size);
     Pair const previous = polygon.GetCorner((subFace + size - 1) % size);
     constexpr double kNormalization = 2; // sub-faces have half the width of a tile
@@ -69,13 +68,12 @@ PlanePlace FindInPlane(Bfr::Parameterization const &parameterization, Pair const
         return {uv, {1, 0}, {0, 1}, {0, 0}};
     }
     int const size = parameterization.GetFaceSize();
-    // Bfr converts coordinates to integers, and has tiles up to the size of the face.
+    // Bfr converts coordinates to integers, and has tiles from 0 on, up to the size of the face.
     double const farthest = size;
-    Pair const nearUv = {std::clamp(uv[0], -farthest, farthest),
-                         std::clamp(uv[1], -farthest, farthest)};
+    Pair const nearUv = {std::clamp(uv[0], 0.0, farthest), std::clamp(uv[1], 0.0, farthest)};
     Pair subUv;
-    int const subFace =
-        parameterization.ConvertCoordToNormalizedSubFace(nearUv.data(), subUv.data());
+    int const subFace = std::min(
+        parameterization.ConvertCoordToNormalizedSubFace(nearUv.data(), subUv.data()), size - 1);
     double const s = std::clamp(subUv[0], 0.0, 1.0);
     double const t = std::clamp(subUv[1], 0.0, 1.0);
     return 5 <= size && size <= KnownPolygon::kMaxSize
