@@ -339,6 +339,7 @@ internal::CellPlan const &LevelTessellation::getCellPlan(bool isInLattice,
 std::vector<int> LevelTessellation::setPlaces(CellMesh const &mesh, std::vector<int> const &order) {
     std::vector<CellMesh::Vertex> const &verts = mesh.GetVertices();
     std::vector<int> places(verts.size(), kInvalid);
+    FarExt::internal::BasePolygon const polygon(GetFaceSize());
     _coords.resize(2 * order.size());
     _places.reserve(order.size());
     for (std::size_t place = 0; place < order.size(); ++place) {
@@ -347,7 +348,7 @@ std::vector<int> LevelTessellation::setPlaces(CellMesh const &mesh, std::vector<
         double const start = std::ldexp(double(vert.a), -internal::CellShape::kBits);
         double const end = std::ldexp(double(vert.b), -internal::CellShape::kBits);
         internal::Pair const coords =
-            FarExt::internal::FindFaceCoords(GetFaceSize(), vert.sector, {start, end});
+            FarExt::internal::FindFaceCoords(polygon, vert.sector, {start, end});
         std::copy(coords.begin(), coords.end(), &_coords[2 * place]);
         _places.push_back({vert.sector, start, end});
         if (_tree && vert.cell >= 0) {

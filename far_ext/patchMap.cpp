@@ -317,9 +317,9 @@ void PatchMap::GetFacePlace(Place const &place, double *u, double *v) const {
     std::array<double, 2> uv = {point.u, point.v};
     if (internal::MakeFaceParameterization(size).HasSubFaces()) {
         int sector = 0;
-        internal::SectorPoint const inSector =
-            findSectorPoint(internal::BasePolygon(size), point, sector);
-        uv = internal::FindFaceCoords(size, sector, inSector);
+        internal::BasePolygon const polygon(size);
+        internal::SectorPoint const inSector = findSectorPoint(polygon, point, sector);
+        uv = internal::FindFaceCoords(polygon, sector, inSector);
     }
     *u = uv[0];
     *v = uv[1];

@@ -81,11 +81,12 @@ PlanePlace FindInPlane(Bfr::Parameterization const &parameterization, Pair const
                : findInSubFace(BasePolygon(size), size, subFace, s, t);
 }
 
-Pair FindFaceCoords(int size, int sector, SectorPoint point) {
+Pair FindFaceCoords(BasePolygon const &polygon, int sector, SectorPoint point) {
+    int const size = polygon.GetSize();
     Bfr::Parameterization const parameterization = MakeFaceParameterization(size);
     if (!parameterization.HasSubFaces()) {
         Pair uv;
-        BasePolygon(size).Write(sector, point, uv.data());
+        polygon.Write(sector, point, uv.data());
         return uv;
     }
     auto const [a, b] = point;

@@ -17,7 +17,8 @@ using FacePlace = std::array<double, 2>;
 
 /// (u, v) of the place that is so far from the centre of a face towards the start and the end of an edge.
 inline FacePlace MakeFacePlace(int faceSize, int edge, double toStart, double toEnd) {
-    return FarExt::internal::FindFaceCoords(faceSize, edge, {toStart, toEnd});
+    return FarExt::internal::FindFaceCoords(FarExt::internal::BasePolygon(faceSize), edge,
+                                            {toStart, toEnd});
 }
 
 /// The place in the plane of the face of (u, v).

@@ -224,13 +224,25 @@ TEST(Parameterization, HasItsDerivativesInThePlane) {
 TEST(Parameterization, TakesPlacesOutsideToTheFaceAndNoneForNone) {
     constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
     constexpr double kInfinite = std::numeric_limits<double>::infinity();
+    for (int const size : {5, 7}) { // before a sub-face they are moved to its side
+        Parameterization const parameterization(size);
+        auto const find = [&](FacePlace const &uv) {
+            auto const point = BfrExt::internal::FindBfrPlace(parameterization, uv, 0).point;
+            return std::make_pair(point.sector, point.coords);
+        };
+        for (double const far : {0.01, 5.0, 1e300, kInfinite}) {
+            EXPECT_EQ(find({-far, 0.2}), find({0, 0.2})) << size << " " << far;
+            EXPECT_EQ(find({0.1, -far}), find({0.1, 0})) << size << " " << far;
+        }
+    }
     for (int const size : {3, 4, 5, 7}) {
         Parameterization const parameterization(size);
         for (double const far : {5.0, 1e300, kInfinite}) {
             for (FacePlace const &uv : {FacePlace{far, 0.2}, {-far, far}, {0.1, -far}}) {
                 auto const place = BfrExt::internal::FindBfrPlace(parameterization, uv, 0);
                 double const sum = place.point.coords[0] + place.point.coords[1];
-                EXPECT_LE(std::abs(sum - 1), size <= 4 ? 1e-15 : 1) << size << " " << uv[0];
+                EXPECT_TRUE(size <= 4 ? std::abs(sum - 1) <= 1e-15 : sum <= 1)
+                    << size << " " << uv[0];
             }
         }
         for (FacePlace const &uv : {FacePlace{kNan, 0.2}, {0.2, kNan}}) {
@@ -389,7 +401,6 @@ TEST(Rates, PointsAndDerivativesAreThoseOfStencils) {
             std::vector<double> const control = gather(surface, shape.positions);
             Bfr::Parameterization const bfr = surface.GetParameterization();
             expectStencils(surface, control, {bfr, int(rates.size()), rates.data()}, 1, tolerance);
-            // Here halves are evaluated with their edges.
             expectStencils(surface, control, {bfr, 2 + face % 7}, 1, tolerance);
         }
     }
