@@ -90,7 +90,8 @@ private:
         Weights const *face;    // of the F-face behind it: of the F-vertex at place 0
     };
     struct Center {
-        Weights const *vertex; // its own, and that of F-vertices
+        Weights const *vertex;  // its own, and that of F-vertices
+        Weights const *fVertex; // of F-vertices there: its own, of its F-face and of its E-faces
         std::vector<Spoke> spokes;
     };
 
@@ -105,7 +106,6 @@ private:
     void apply(Ring const &ring, Center const &center, std::size_t paddedSize, REAL *points) const;
 
     std::vector<Center> _rings;
-    Weights const *_fVertex = nullptr; // as of a center, of vertices with three faces
 };
 
 } // namespace OpenSubdivHex::BfrExt::internal

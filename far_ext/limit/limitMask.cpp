@@ -660,10 +660,12 @@ LimitMask FaceLimitMaskFinder::Find(Index face) const {
     return isBesideOneFace ? stepBack(std::move(mask), face) : mask;
 }
 
-// The F-face is a level of its own here: it has no sector corners and no irregular ones, and a
-// diagonal that is less sharp.
+// The F-face is a level of its own here: it has no sector corners and no irregular ones, a diagonal that
+// is less sharp, and flags from quads.
 LimitMask FaceLimitMaskFinder::findAfterStep(Index face) const {
     int const size = _level.GetFaceSize(face);
+    Index const first = _level.faceFirstCorner[face];
+    bool const isQuad = size == 4;
     Level child;
     child.depth = _level.depth + 1;
     child.numFaces = 1;
@@ -678,6 +680,16 @@ LimitMask FaceLimitMaskFinder::findAfterStep(Index face) const {
     child.diagonalSharpness[0] =
         Crease(_sdcOptions).SubdivideUniformSharpness(_level.GetDiagonalSharpness(face));
 
+    child.numHexagonalSteps = _level.numHexagonalSteps + 1;
+    for (int i = 0; i < size && !isQuad; ++i) {
+        if (QuadCorner const *const quad = _level.FindQuadCorner(first + i)) {
+            QuadFlag const out = AppendToQuadFlag(quad->out, _level.numHexagonalSteps, 0);
+            QuadFlag const in = AppendToQuadFlag(quad->in, _level.numHexagonalSteps, 0);
+            if (out != 0 || in != 0) {
+                child.quadCorners.push_back({i, out, in});
+            }
+        }
+    }
     return stepBack(FaceLimitMaskFinder(child, _sdcOptions, _schemeOptions).Find(0), face);
 }
 

@@ -272,6 +272,9 @@ void LimitPatchGatherer::addFace(Index face, int local, bool isRing, LimitPatch 
                 irregular.corner = patchFirst + i;
                 patch.irregularCorners.push_back(irregular);
             }
+            if (QuadCorner const *const quad = _level.FindQuadCorner(corner)) {
+                patch.quadCorners.push_back({patchFirst + i, quad->out, quad->in});
+            }
         }
     }
     patch.faceSizes.push_back(size);
@@ -379,6 +382,7 @@ bool LimitPatchGatherer::hasIrregularities(LimitPatch const &patch) const {
         return _level.GetNumVertexFaces(source) >= kMinIrregularFaces;
     };
     if (_level.numHexagonalSteps == 0 || !patch.irregularCorners.empty() ||
+        !patch.quadCorners.empty() ||
         std::any_of(patch.sources.begin(), patch.sources.begin() + _numComplete, isIrregular)) {
         return true;
     }
@@ -454,6 +458,10 @@ void LimitPatchGatherer::AddSignature(LimitPatch &patch) {
         signature.insert(signature.end(),
                          {irregular.corner, irregular.numFaces, getBits(irregular.weight),
                           irregular.kind, int(irregular.facesAround)});
+    }
+    signature.push_back(int(patch.quadCorners.size()));
+    for (QuadCorner const &quad : patch.quadCorners) {
+        signature.insert(signature.end(), {quad.corner, quad.out, quad.in});
     }
 }
 
@@ -611,6 +619,7 @@ void BuildPatchLevel(LimitPatch const &patch, Level &level) {
     level.sharpEnds = patch.sharpEnds;
     level.irregularVerts = patch.irregularVerts;
     level.irregularCorners = patch.irregularCorners;
+    level.quadCorners = patch.quadCorners;
     level.numHexagonalSteps = patch.numHexagonalSteps;
 }
 

@@ -45,6 +45,7 @@ struct LimitPatch {
     /// With Chaikin's rule, of the vertices further out where semi-sharp edges of these end.
     std::vector<SharpEnd> sharpEnds;
     std::vector<IrregularCorner> irregularCorners; ///< ascending; as far as sectorCorners
+    std::vector<QuadCorner> quadCorners;           ///< ascending; as far as sectorCorners
     std::vector<IrregularVertex> irregularVerts;   ///< ascending; of vertex 0 and its neighbours
     /// As of the level, as long as it matters for the masks of this patch or of those that it makes.
     int numHexagonalSteps = 0;

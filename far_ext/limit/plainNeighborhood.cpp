@@ -89,6 +89,11 @@ std::vector<VertexMark> markFeatures(Level const &level) {
             result[std::size_t(vert)] = VertexMark::Irregular;
         }
     }
+    for (QuadCorner const &quad : level.quadCorners) {
+        for (Index vert : level.GetFaceVertices(level.FindFaceOfCorner(quad.corner))) {
+            result[std::size_t(vert)] = VertexMark::Irregular;
+        }
+    }
     auto const mark = [&](Index vert) { result[std::size_t(vert)] = VertexMark::Feature; };
     auto const markEdge = [&](Index edge) {
         mark(level.edgeVerts[edge][0]);
@@ -176,7 +181,7 @@ bool PlainNeighborhoodGatherer::addFace(Index face, int local, PlainNeighborhood
 // Of the faces further out, only the corners at the neighbours of the vertex matter.
 void PlainNeighborhoodGatherer::addIrregularCorners(Index face, int local, bool isRing,
                                                     PlainNeighborhood &result) const {
-    if (_level.irregularCorners.empty()) {
+    if (_level.irregularCorners.empty() && _level.quadCorners.empty()) {
         return;
     }
     auto const numComplete = Index(1 + _neighbors.size());
@@ -193,6 +198,19 @@ void PlainNeighborhoodGatherer::addIrregularCorners(Index face, int local, bool 
             result.key.push_back(char(irregular.kind));
             result.key.push_back(char(irregular.facesAround));
             result.key.append(bytes, sizeof bytes);
+            ++numAdded;
+        }
+    }
+    result.key.push_back(numAdded);
+    numAdded = 0;
+    for (Index corner = first; corner < first + size && !_level.quadCorners.empty(); ++corner) {
+        QuadCorner const *const quad = _level.FindQuadCorner(corner);
+        if (quad && (isRing || _numbers.Find(_level.faceVerts[corner]) < numComplete)) {
+            result.key.push_back(char((corner - first - local + size) % size));
+            for (QuadFlag const flag : {quad->out, quad->in}) {
+                result.key.push_back(char(flag & 0xff));
+                result.key.push_back(char(flag >> 8));
+            }
             ++numAdded;
         }
     }

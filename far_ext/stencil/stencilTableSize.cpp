@@ -33,7 +33,7 @@ RowWeights countUnfactorizedWeights(StencilPlan const &plan, int level) {
     for (Index vVertex = 0; vVertex < rows.GetNumVVertices(); ++vVertex) {
         Index const pVert = rows.GetVVertexParent(vVertex);
         auto const mask = rows.GetVertexRule(pVert);
-        if (!(mask.faceWeight > 0) || !rows.HasVertexFaces(pVert)) {
+        if (!mask.HasFaces() || !rows.HasVertexFaces(pVert)) {
             rows.ForEachSource(vVertex, mask, [&](Index, double) { ++result.ofVVertices; });
             continue;
         }

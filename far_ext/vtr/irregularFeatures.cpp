@@ -114,6 +114,11 @@ private:
     void forEachMarked(Index begin, Index end, FUNCTION const &function) const;
     void findCorners();
     IrregularCorner *writeCorners(Index face, Mark mark, IrregularCorner *next) const;
+    // Whether a path tells the mask of a corner.
+    bool hasQuadRow(Index corner) const {
+        QuadCorner const *const quad = _level.FindQuadCorner(corner);
+        return quad && FindQuadRow(_level.numHexagonalSteps, quad->out, quad->in).mask;
+    }
 
     Refinement const &_refinement;
     Level &_level;
@@ -227,9 +232,9 @@ void IrregularFinder::findCorners() {
     std::vector<std::size_t> const firsts =
         ParallelSums<std::size_t>(count, [&](Index begin, Index end) {
             std::size_t size = 0;
-            forEachMarked(begin, end, [&](Index, Mark mark) {
-                forEachCorner(mark, _numRows,
-                              [&size](Side const &, int, IrregularCorner::Kind) { ++size; });
+            IrregularCorner corners[kHexagon];
+            forEachMarked(begin, end, [&](Index face, Mark mark) {
+                size += std::size_t(writeCorners(face, mark, corners) - corners);
             });
             return size;
         });
@@ -260,7 +265,7 @@ IrregularCorner *IrregularFinder::writeCorners(Index face, Mark mark, IrregularC
         places |= 1U << local;
     });
     for (int local = 0; local < kHexagon; ++local) {
-        if (places >> local & 1) {
+        if ((places >> local & 1) != 0 && !hasQuadRow(first + local)) {
             *next++ = found[local];
         }
     }

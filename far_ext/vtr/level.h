@@ -7,6 +7,7 @@
 
 #include "far_ext/indexing.h"
 #include "far_ext/mask.h"
+#include "far_ext/rules/quadPath.h"
 
 #include <opensubdiv/sdc/crease.h>
 #include <opensubdiv/vtr/types.h>
@@ -101,6 +102,13 @@ struct IrregularCorner {
     float weight;        ///< as of the vertex
     Kind kind;
     FacesAround facesAround; ///< of the irregular vertex; Others beside a quad
+};
+
+/// \brief A corner one of whose flags came from a quad, by a path that matters for masks.
+struct QuadCorner {
+    Far::Index corner;
+    QuadFlag out; ///< with the edge that begins at the corner
+    QuadFlag in;  ///< with the edge that ends there
 };
 
 /// \brief A boundary edge where an edge of level 0 came apart into one for each of its faces.  Edges
@@ -220,7 +228,9 @@ struct Level {
         return numFreeBoundaries + numSharpBoundariesA + numSharpBoundariesB;
     }
     /// Whether any face of the level has another mask than that of its size.
-    bool HasFeatures() const { return HasSharpFaces() || !irregularCorners.empty(); }
+    bool HasFeatures() const {
+        return HasSharpFaces() || !irregularCorners.empty() || !quadCorners.empty();
+    }
     /// Whether that is so because of something sharp.
     bool HasSharpFaces() const {
         return !halfFaces.empty() || !diagonalSharpness.empty() || !sectorCorners.empty();
@@ -285,6 +295,14 @@ struct Level {
         return {irregularCorners.data() + (first - irregularCorners.begin()), int(last - first)};
     }
 
+    /// The entry of a corner among quads, null when it has none.
+    QuadCorner const *FindQuadCorner(Index corner) const {
+        auto const found = std::lower_bound(
+            quadCorners.begin(), quadCorners.end(), corner,
+            [](QuadCorner const &quad, Index index) { return quad.corner < index; });
+        return found != quadCorners.end() && found->corner == corner ? &*found : nullptr;
+    }
+
     /// Whether the level has no orders of edges around vertices of its own: where a hexagonal
     /// refinement made it without boundaries, vertices have as many edges as faces, and their
     /// places in these are known.
@@ -333,6 +351,7 @@ struct Level {
         function(level.sectorCorners);
         function(level.irregularVerts);
         function(level.irregularCorners);
+        function(level.quadCorners);
     }
 
     int depth = 0;
@@ -401,6 +420,7 @@ struct Level {
     // What has masks of its own with FaceMask::Smooth; empty with others.
     std::vector<IrregularVertex> irregularVerts;   ///< ascending
     std::vector<IrregularCorner> irregularCorners; ///< ascending; one for a corner at most
+    std::vector<QuadCorner> quadCorners;           ///< ascending
 
     // Made when they are first asked for.
     Kept<RefinementRules> rules[2];            ///< by Interpolation; see GetRules()

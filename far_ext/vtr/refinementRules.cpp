@@ -3,10 +3,13 @@
 
 #include "far_ext/rules/sharpMask.h"
 #include "indexSet.h"
+#include "parallel.h"
 
 #include <cstddef>
 #include <cstring>
+#include <map>
 #include <unordered_map>
+#include <utility>
 
 namespace OpenSubdivHex::FarExt::internal {
 
@@ -53,6 +56,8 @@ struct FaceTags {
     SectorCorner const *endSectors;
     IrregularCorner const *irregular;
     IrregularCorner const *endIrregular;
+    QuadCorner const *quads;
+    QuadCorner const *endQuads;
 
     bool operator==(FaceTags const &other) const {
         return isHalf == other.isHalf && size == other.size && diagonal == other.diagonal &&
@@ -67,6 +72,11 @@ struct FaceTags {
                               constexpr std::size_t kFirst = offsetof(IrregularCorner, numFaces);
                               return x.corner - firstCorner == y.corner - other.firstCorner &&
                                      std::memcmp(&x.numFaces, &y.numFaces, sizeof x - kFirst) == 0;
+                          }) &&
+               std::equal(quads, endQuads, other.quads, other.endQuads,
+                          [&](QuadCorner const &x, QuadCorner const &y) {
+                              return x.corner - firstCorner == y.corner - other.firstCorner &&
+                                     x.out == y.out && x.in == y.in;
                           });
     }
 
@@ -87,6 +97,9 @@ struct FaceTags {
                  ++corner) {
                 add(corner->weight, (corner->corner - tags.firstCorner) ^ corner->kind << 8 ^
                                         int(corner->facesAround) << 12 ^ corner->numFaces << 16);
+            }
+            for (QuadCorner const *quad = tags.quads; quad != tags.endQuads; ++quad) {
+                add(0, (quad->corner - tags.firstCorner) ^ quad->out << 4 ^ quad->in << 16);
             }
             hash ^= hash >> 32;
             return std::size_t(hash);
@@ -131,13 +144,64 @@ void RefinementRules::endFaceRuns() {
     }
 }
 
-// Sharp vertices have their rules; in an irregular vertex, the smooth one has the share that these leave.
+// A vertex has them where the paths of all of its corners tell one.
+void RefinementRules::makeVertexWeights() {
+    if (_level.quadCorners.empty()) {
+        return;
+    }
+    Buffer<float> ofCorners; // negative where there is none: with so few digits they are exact
+    ofCorners.Resize(std::size_t(_level.numCorners));
+    std::fill_n(ofCorners.data(), ofCorners.size(), -1.0f);
+    ParallelFor(Index(_level.quadCorners.size()), [&](Index i) {
+        QuadCorner const &quad = _level.quadCorners[std::size_t(i)];
+        ofCorners[std::size_t(quad.corner)] =
+            float(FindQuadRow(_level.numHexagonalSteps, quad.out, quad.in).vertexWeight);
+    });
+    _weightsOfVerts.Resize(std::size_t(_level.numVertices));
+    std::map<std::vector<double>, int> positions;
+    std::vector<double> weights;
+    for (Index vert = 0; vert < _level.numVertices; ++vert) {
+        weights.assign(1, 1.0);
+        for (Index k = _level.vertFirstFace[vert]; k < _level.vertFirstFace[vert + 1]; ++k) {
+            weights.push_back(ofCorners[std::size_t(_level.GetVertexCorner(k))]);
+            weights[0] -= weights.back();
+        }
+        bool const isPlain =
+            weights.size() == 1 || *std::min_element(weights.begin() + 1, weights.end()) < 0;
+        int &ofVert = _weightsOfVerts[std::size_t(vert)];
+        ofVert = kPlain;
+        if (!isPlain) {
+            auto const [found, isNew] = positions.try_emplace(weights, int(_vertexWeights.size()));
+            if (isNew) {
+                _vertexWeights.insert(_vertexWeights.end(), weights.begin(), weights.end());
+            }
+            ofVert = found->second;
+        }
+    }
+}
+
+// Appends the weights of a sharp vertex, in which those at a position have a share in place of plain ones.
+void RefinementRules::addVertexWeights(int smooth, double share, VertexRule &rule, int numFaces) {
+    VertexVertexMask const plain = GetPlainVertexMask(numFaces);
+    auto const first = std::size_t(smooth);
+    double &ofVertex = rule.weights[rule.numSources - 1];
+    ofVertex += share * (_vertexWeights[first] - plain.vertexWeight);
+    _vertexWeights.push_back(ofVertex);
+    for (int i = 1; i <= numFaces; ++i) {
+        double const weight = _vertexWeights[first + std::size_t(i)];
+        _vertexWeights.push_back(rule.faceWeight + share * (weight - plain.faceWeight));
+    }
+}
+
+// Sharp vertices have their rules; in an irregular vertex, and in one with weights by face, the smooth one has the share
+// that these leave.
 void RefinementRules::makeRuledVertices(bool hasIrregular) {
     _ruledVertices.reserve(_level.sharpVerts.size() +
                            (hasIrregular ? _level.irregularVerts.size() : 0));
     auto nextIrregular = _level.irregularVerts.begin();
     auto const endIrregular = hasIrregular ? _level.irregularVerts.end() : nextIrregular;
     IrregularMasks masks(_level.numHexagonalSteps);
+    std::vector<std::pair<std::size_t, std::size_t>> byFace; // with positions of weights
     auto const addIrregular = [&](IrregularVertex const &irregular, double smoothShare,
                                   VertexRule &rule) {
         int const numFaces = _level.GetNumVertexFaces(irregular.vert);
@@ -149,7 +213,7 @@ void RefinementRules::makeRuledVertices(bool hasIrregular) {
     };
     auto const addIrregularBefore = [&](Index vert) {
         for (; nextIrregular != endIrregular && nextIrregular->vert < vert; ++nextIrregular) {
-            if (nextIrregular->weight > 0) {
+            if (nextIrregular->weight > 0 && GetVertexWeights(nextIrregular->vert) == kPlain) {
                 Index const index = nextIrregular->vert;
                 VertexRule rule = plainRule(index, _level.GetNumVertexFaces(index));
                 addIrregular(*nextIrregular, 1, rule);
@@ -159,7 +223,7 @@ void RefinementRules::makeRuledVertices(bool hasIrregular) {
     };
     for (SharpVertex const &sharp : _level.sharpVerts) {
         addIrregularBefore(sharp.vert);
-        VertexRule rule = {sharp.faceWeight, 0, {}, {}};
+        VertexRule rule = {sharp.faceWeight, 0, {}, {}, nullptr};
         auto const add = [&rule](Index source, double weight) {
             rule.sources[rule.numSources] = source;
             rule.weights[rule.numSources++] = weight;
@@ -170,12 +234,25 @@ void RefinementRules::makeRuledVertices(bool hasIrregular) {
             }
         }
         add(sharp.vert, sharp.vertexWeight);
-        if (nextIrregular != endIrregular && nextIrregular->vert == sharp.vert) {
-            addIrregular(*nextIrregular++, sharp.smoothShare, rule);
+        bool const isIrregular =
+            nextIrregular != endIrregular && nextIrregular->vert == sharp.vert;
+        if (int const smooth = GetVertexWeights(sharp.vert);
+            smooth != kPlain && sharp.smoothShare > 0) {
+            byFace.emplace_back(_ruledVertices.size(), _vertexWeights.size());
+            addVertexWeights(smooth, sharp.smoothShare, rule,
+                             _level.GetNumVertexFaces(sharp.vert));
+        } else if (isIrregular) {
+            addIrregular(*nextIrregular, sharp.smoothShare, rule);
         }
+        nextIrregular += isIrregular ? 1 : 0;
         _ruledVertices.push_back({sharp.vert, rule});
     }
     addIrregularBefore(_level.numVertices);
+    for (auto const &[ruled, position] : byFace) {
+        VertexRule &rule = _ruledVertices[ruled].rule;
+        rule.faceWeights = _vertexWeights.data() + position + 1;
+        rule.faceWeight = rule.faceWeights[0];
+    }
 }
 
 // Finds the faces that are not circulant, and makes a rule for each kind of them.
@@ -199,15 +276,26 @@ public:
         FaceTags tags = {};
         tags.sectors = tags.endSectors = _level.sectorCorners.data();
         tags.irregular = tags.endIrregular = _level.irregularCorners.data();
+        tags.quads = tags.endQuads = _level.quadCorners.data();
+        QuadCorner const *const endQuads = tags.quads + (_isVertex ? _level.quadCorners.size() : 0);
+        QuadCorner const *nextQuad = tags.quads;
         int rule = kCirculant;
-        while (nextSharp != sharpFaces.end() || nextCorner != endCorners) {
+        while (nextSharp != sharpFaces.end() || nextCorner != endCorners || nextQuad != endQuads) {
             Index face = nextSharp != sharpFaces.end() ? *nextSharp : _level.numFaces;
             if (nextCorner != endCorners) {
                 face = std::min(face, _level.FindFaceOfCorner(nextCorner->corner));
             }
+            if (nextQuad != endQuads) {
+                face = std::min(face, findFaceOfNext(nextQuad->corner));
+            }
             nextSharp += nextSharp != sharpFaces.end() && *nextSharp == face;
             readTags(face, tags);
+            _endRead = face + 1;
             nextCorner = std::max(nextCorner, tags.endIrregular);
+            nextQuad = std::max(nextQuad, tags.endQuads);
+            if (!hasOwnRows(tags)) {
+                continue;
+            }
             if (!(tags == before)) {
                 auto const [found, isNew] = ruleOfTags.try_emplace(tags, _rules.GetNumDenseRules());
                 rule = found->second;
@@ -227,6 +315,17 @@ private:
     std::vector<Index> findSharpFaces() const;
     void addFace(Index face, int rule);
     void readTags(Index face, FaceTags &tags) const;
+    // The row that a path tells of a corner, whose entry is the next one, if it is not behind it.
+    QuadRow readQuadRow(QuadCorner const *&quad, QuadCorner const *end, Index corner) const {
+        while (quad != end && quad->corner < corner) {
+            ++quad;
+        }
+        return quad != end && quad->corner == corner
+                   ? FindQuadRow(_level.numHexagonalSteps, quad->out, quad->in)
+                   : QuadRow{nullptr, false, -1};
+    }
+    bool hasOwnRows(FaceTags const &tags) const;
+    Index findFaceOfNext(Index corner) const;
     void addRule(FaceTags const &tags);
     void addRow(std::vector<double> const &row);
     static void addMask(double const (&mask)[kHexagon], int corner, bool isBackwards, double share,
@@ -253,6 +352,7 @@ private:
     QuadMask _quadMask;
     double _halfFaceWeights[kTrapezoid][kTrapezoid];
     Index _endDense = 0; // behind the last face with a dense rule
+    Index _endRead = 0;  // behind the last face whose tags were read
 };
 
 // Those with anything but irregular corners, ascending.
@@ -301,12 +401,31 @@ void RefinementRules::DenseRuleMaker::readTags(Index face, FaceTags &tags) const
     if (_isVertex) {
         readOn(_level.sectorCorners, tags.sectors, tags.endSectors);
         readOn(_level.irregularCorners, tags.irregular, tags.endIrregular);
+        readOn(_level.quadCorners, tags.quads, tags.endQuads);
     }
 }
 
 void RefinementRules::DenseRuleMaker::addRow(std::vector<double> const &row) {
     _rules._rows.push_back(_rules._weights.size());
     _rules._weights.insert(_rules._weights.end(), row.begin(), row.end());
+}
+
+// Whether any corner does not follow the circulant mask: flags alone are no reason.
+bool RefinementRules::DenseRuleMaker::hasOwnRows(FaceTags const &tags) const {
+    if (tags.isHalf || tags.diagonal > 0 || tags.sectors != tags.endSectors ||
+        tags.irregular != tags.endIrregular) {
+        return true;
+    }
+    return tags.size == kHexagon &&
+           std::any_of(tags.quads, tags.endQuads, [this](QuadCorner const &quad) {
+               return FindQuadRow(_level.numHexagonalSteps, quad.out, quad.in).mask != nullptr;
+           });
+}
+
+// The face of a corner, which lies behind those that have been read: mostly in the next face.
+Index RefinementRules::DenseRuleMaker::findFaceOfNext(Index corner) const {
+    bool const isNext = _endRead < _level.numFaces && corner < _level.faceFirstCorner[_endRead + 1];
+    return isNext ? _endRead : _level.FindFaceOfCorner(corner);
 }
 
 // Corners of a face with nothing of their own have the rows of its circulant rule.
@@ -317,6 +436,7 @@ void RefinementRules::DenseRuleMaker::addRule(FaceTags const &tags) {
     double const sharp = tags.isHalf ? 1 : tags.diagonal;
     SectorCorner const *sector = tags.sectors;
     IrregularCorner const *irregular = tags.irregular;
+    QuadCorner const *quad = tags.quads;
     for (int i = 0; i < size; ++i) {
         Index const corner = tags.firstCorner + i;
         double towards = 0;
@@ -332,12 +452,17 @@ void RefinementRules::DenseRuleMaker::addRule(FaceTags const &tags) {
         bool const isIrregular = irregular != tags.endIrregular && irregular->corner == corner;
         std::size_t const circulantRow =
             _rules._circulants[std::size_t(size)] + std::size_t(size - i);
-        if (sharp == 0 && towards == 0 && !hasOneFace && !isIrregular) {
+        QuadRow const byPath =
+            size == kHexagon ? readQuadRow(quad, tags.endQuads, corner) : QuadRow{nullptr, false, -1};
+        if (sharp == 0 && towards == 0 && !hasOneFace && !isIrregular && !byPath.mask) {
             _rules._rows.push_back(circulantRow);
             continue;
         }
         auto const circulant = _rules._weights.begin() + std::ptrdiff_t(circulantRow);
         std::vector<double> row(circulant, circulant + size);
+        if (byPath.mask) {
+            addMask(*byPath.mask, i, byPath.isBackwards, 1, row);
+        }
         for (double &weight : row) {
             weight *= 1 - sharp - towards;
         }
@@ -437,6 +562,9 @@ RefinementRules::RefinementRules(Level const &parent, HexSchemeOptions schemeOpt
     bool const isHexagonal = _step == StepType::Hexagonal;
     makeCirculantRules();
     if (interpolation == Interpolation::Vertex) {
+        if (isHexagonal) {
+            makeVertexWeights();
+        }
         makeRuledVertices(isHexagonal);
     }
     if (isHexagonal && parent.HasFeatures()) {

@@ -157,9 +157,9 @@ struct QuadParts {
     std::vector<std::array<double, 6>> beside;
 };
 std::vector<QuadParts> const kQuadParts = {
-    {{139, 45, 27, 45}, {{137, 58, 0, 14, 47, 0}}},
-    {{126, 56, 18, 56}, {{137, 63, 0, 22, 21, 13}, {97, 46, 21, 0, 33, 59}}},
-    {{144, 48, 16, 48}, {{142, 68, 0, 9, 37, 0}}},
+    {{127, 55, 19, 55}, {{137, 58, 0, 14, 47, 0}}},
+    {{122, 54, 26, 54}, {{137, 63, 0, 22, 21, 13}, {97, 46, 21, 0, 33, 59}}},
+    {{116, 54, 32, 54}, {{142, 68, 0, 9, 37, 0}}},
 };
 
 } // namespace
@@ -214,6 +214,93 @@ std::optional<Point> NewPointBesideQuad(int numSteps, std::vector<Point> const &
         sum += rows[row][j] / 256 * face[(i + (isMirrored ? 6 - j : j)) % 6];
     }
     return sum;
+}
+
+namespace {
+
+struct PathRow {
+    int kind;
+    std::string path;
+    int ofVertex;
+    std::vector<double> parts; // none of quads
+};
+std::vector<PathRow> const kPathRows = {
+#include "far_ext/rules/quadRows.inl"
+};
+
+bool isAll(char digit, std::string const &digits) {
+    return std::all_of(digits.begin(), digits.end(), [digit](char d) { return d == digit; });
+}
+
+/// The name of a path's row: from four steps on the digits before the last two are a star, where they are all alike.
+std::string rowOfPath(QuadPath const &path) {
+    if (path.size() < 2) {
+        return {};
+    }
+    std::string const digits = path.substr(1);
+    if (digits.size() < 4) {
+        return digits;
+    }
+    std::string const before = digits.substr(0, digits.size() - 2);
+    std::string const last = digits.substr(digits.size() - 2);
+    return isAll('0', before)                     ? "0*" + last
+           : isAll('3', before) && path[0] == '4' ? "3*" + last
+                                                  : "";
+}
+
+} // namespace
+
+namespace {
+
+/// Of a corner; null where its paths have none.
+PathRow const *findRow(QuadPath const &out, QuadPath const &in) {
+    std::string const ofOut = rowOfPath(out);
+    std::string const ofIn = rowOfPath(in);
+    if (ofOut.empty() || ofIn.empty()) {
+        return nullptr;
+    }
+    std::string const row = std::min(ofOut, ofIn);
+    bool const isStar = row.size() > 3;
+    if (isStar && ofOut[0] != ofIn[0]) {
+        return nullptr;
+    }
+    int kind = 4;
+    if (!isStar && out[0] == in[0]) {
+        // At a vertex of another kind, and beside it.
+        std::string const before = row.substr(0, row.size() - 1);
+        if (out[0] == 'o' && isAll('3', before) && (row.back() == '3' || row.back() == '1')) {
+            return nullptr;
+        }
+        kind = out[0] == 'o' ? 4 : out[0] - '0';
+    }
+    for (int const wanted : {kind, 4}) {
+        for (PathRow const &entry : kPathRows) {
+            if (entry.kind == wanted && entry.path == row) {
+                return &entry;
+            }
+        }
+    }
+    return nullptr;
+}
+
+} // namespace
+
+std::optional<Point> NewPointByPath(std::vector<Point> const &face, int i, QuadPath const &out,
+                                    QuadPath const &in) {
+    PathRow const *const row = findRow(out, in);
+    if (!row || row->parts.empty()) {
+        return {};
+    }
+    Point sum = Point::Zero(face[0].size());
+    for (int j = 0; j < 6; ++j) {
+        sum += row->parts[j] / 4096 * face[(i + (rowOfPath(in) < rowOfPath(out) ? 6 - j : j)) % 6];
+    }
+    return sum;
+}
+
+std::optional<double> WeightByPath(QuadPath const &out, QuadPath const &in) {
+    PathRow const *const row = findRow(out, in);
+    return row ? std::optional<double>(row->ofVertex / 4096.0) : std::nullopt;
 }
 
 Point NewPointOfQuad(int numSteps, std::vector<Point> const &face, int i) {

@@ -310,12 +310,16 @@ private:
         if (!face.isHalf) {
             std::vector<Point> const points = pointsOf(face.vertices);
             bool const isQuad = hasIrregularRules() && points.size() == 4;
+            auto const [out, in] = pathsOf(corner);
+            std::optional<Point> const byPath = hasIrregularRules() && points.size() == 6
+                                                    ? NewPointByPath(points, corner.place, out, in)
+                                                    : std::nullopt;
             Point const smooth = isQuad
                                      ? NewPointOfQuad(_mesh.numHexagonalSteps, points, corner.place)
-                                     : maskPoint(points, corner.place);
+                                     : byPath.value_or(maskPoint(points, corner.place));
             Point const plain =
                 atOneFace(points, corner, towards * vertex + (1 - towards) * smooth);
-            if (!hasIrregularRules() || points.size() != 6) {
+            if (!hasIrregularRules() || points.size() != 6 || byPath) {
                 return plain;
             }
             std::vector<Side> corners;
@@ -335,11 +339,17 @@ private:
         std::vector<Point> const hexagon =
             pointsOf({own[0], other.vertices[2], other.vertices[3], own[1], own[2], own[3]});
         int const places[] = {0, 3, 4, 5};
-        Point const smooth = maskPoint(hexagon, places[corner.place]);
+        std::size_t const place = std::size_t(corner.place);
+        std::optional<Point> byPath;
+        if (hasIrregularRules()) {
+            auto const [out, in] = pathsOf(corner);
+            byPath = NewPointByPath(hexagon, places[place], out, in);
+        }
+        Point const smooth = byPath.value_or(maskPoint(hexagon, places[place]));
         double const sharp = _isVarying ? 0 : std::min(1.0, double(line.sharpness));
         Point const plain = sharp * halfPoint(face, corner.place) + towards * vertex +
                             (1 - sharp - towards) * smooth + fromOneFace(face, corner);
-        if (!hasIrregularRules()) {
+        if (!hasIrregularRules() || byPath) {
             return plain;
         }
         int const self = corner.face;
@@ -418,6 +428,47 @@ private:
         return near * beside + far * farFrom - (near + far) * halfPoint(face, corner.place);
     }
 
+    /// At a corner, those of the hexagon where its face is half of one.
+    std::pair<QuadPath, QuadPath> pathsOf(Side corner) const {
+        Face const &face = _mesh.faces[corner.face];
+        if (face.pathsOut.empty()) {
+            return {};
+        }
+        std::size_t const place = std::size_t(corner.place);
+        QuadPath out = face.pathsOut[place];
+        QuadPath in = face.pathsIn[place];
+        if (face.isHalf && place < 2) {
+            // At the ends of the line, one edge is the other half's.
+            Edge const &line = _mesh.edges[face.edges[0]];
+            if (line.sides.size() == 1) {
+                return {};
+            }
+            bool const isFirst = line.sides[0].face == corner.face;
+            Face const &other = _mesh.faces[line.sides[isFirst ? 1 : 0].face];
+            (place == 0 ? out : in) = place == 0 ? other.pathsOut[1] : other.pathsIn[0];
+        }
+        return {out, in};
+    }
+
+    /// The smooth rule where the paths of all corners tell the weights of their new points.
+    std::optional<Point> vertexByPaths(int v) const {
+        Point const old = _values.row(v);
+        Point moved = old;
+        std::set<int> around;
+        for (Side corner : _mesh.vertices[v].corners) {
+            int const point = _child.fVertices[corner.face][corner.place];
+            auto const [out, in] = pathsOf(corner);
+            std::optional<double> const weight = WeightByPath(out, in);
+            if (!weight) {
+                return {};
+            }
+            if (around.insert(point).second) {
+                moved += *weight * (_result.row(point) - old);
+            }
+        }
+        return moved;
+    }
+
     Point smoothVertex(int v) const {
         std::set<int> around;
         for (Side corner : _mesh.vertices[v].corners) {
@@ -426,6 +477,11 @@ private:
         Point sum = _values.row(v);
         for (int vertex : around) {
             sum += _result.row(vertex);
+        }
+        if (hasIrregularRules()) {
+            if (std::optional<Point> const byPath = vertexByPaths(v)) {
+                return *byPath;
+            }
         }
         Point const plain = sum / double(around.size() + 1);
         Irregularities::Vertex const irregular =

@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "quadPath.h"
+
+#include "far_ext/mask.h"
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstring>
+#include <vector>
+
+namespace OpenSubdivHex::FarExt::internal {
+
+namespace {
+
+constexpr int kHexagon = 6;
+constexpr int kDigit = 4; // digits
+constexpr int kNumPaths = kDigit * kDigit * kDigit;
+constexpr int kNumVertices = 5;
+constexpr int kNumEndings = kDigit * kDigit;
+
+// One more than these are flags: a path, of as many digits as there were steps, and a vertex; or, in the constant
+// levels, two digits, of a vertex or of a quad.
+struct Path {
+    int vertex;
+    int digits;
+};
+
+Path getPath(QuadFlag flag) { return {(flag - 1) / kNumPaths, (flag - 1) % kNumPaths}; }
+
+// The path of one digit alone.
+constexpr int repeat(int digit, int count) {
+    int result = 0;
+    for (int i = 0; i < count; ++i) {
+        result = result * kDigit + digit;
+    }
+    return result;
+}
+
+struct TableRow {
+    int numFaces;     // of the vertex
+    char const *path; // behind a star the last two digits
+    int ofVertex;     // of the corner's F-vertex in V'
+    int parts[kHexagon]; // none of quads, which have the mask of all of them
+};
+constexpr double kParts = 4096;
+constexpr TableRow kTable[] = {
+#include "quadRows.inl"
+};
+
+// The rows of a number of steps, by place.
+class Rows {
+public:
+    Rows() {
+        for (auto &places : _places) {
+            places.fill(kNone);
+        }
+        for (TableRow const &row : kTable) {
+            char const *const star = std::strchr(row.path, '*');
+            char const *const path = star ? star + 1 : row.path;
+            int digits = 0;
+            for (char const *digit = path; *digit != 0; ++digit) {
+                digits = digits * kDigit + (*digit - '0');
+            }
+            int const numSteps = star ? kNumStepsToConstantMasks : int(std::strlen(path));
+            int const first =
+                star ? (row.path[0] == '3' ? kNumEndings : 0) : kNumPaths * getVertex(row.numFaces);
+            _places[std::size_t(numSteps)][std::size_t(first + digits)] = int(_rows.size());
+            Row &made = _rows.emplace_back();
+            std::transform(row.parts, row.parts + kHexagon, made.weights,
+                           [](int part) { return part / kParts; });
+            made.hasMask = row.parts[0] > 0;
+            made.ofVertex = row.ofVertex / kParts;
+        }
+    }
+
+    struct Row {
+        double weights[kHexagon];
+        bool hasMask;
+        double ofVertex;
+    };
+    // Null where there is none.
+    Row const *Find(int numSteps, int place) const {
+        int const index = _places[std::size_t(numSteps)][std::size_t(place)];
+        return index == kNone ? nullptr : &_rows[std::size_t(index)];
+    }
+
+private:
+    static constexpr int kNone = -1;
+
+    static int getVertex(int numFaces) {
+        return int(numFaces == 3   ? QuadVertex::Three
+                   : numFaces == 5 ? QuadVertex::Five
+                   : numFaces == 6 ? QuadVertex::Six
+                                   : QuadVertex::Four);
+    }
+
+    std::array<std::array<int, std::size_t(kNumVertices *kNumPaths)>, kNumStepsToConstantMasks + 1>
+        _places;
+    std::vector<Row> _rows;
+};
+
+} // namespace
+
+QuadFlag MakeQuadFlag(QuadVertex vertex) { return QuadFlag(1 + kNumPaths * int(vertex)); }
+
+QuadFlag AppendToQuadFlag(QuadFlag flag, int numSteps, int digit) {
+    if (flag == 0) {
+        return 0;
+    }
+    auto const [vertex, digits] = getPath(flag);
+    if (numSteps + 1 < kNumStepsToConstantMasks) {
+        return QuadFlag(1 + kNumPaths * vertex + digits * kDigit + digit);
+    }
+    // The first digit of three, or of the ending, has to be what is before it.
+    int const ending = digits % kNumEndings;
+    bool const isAtVertex = numSteps < kNumStepsToConstantMasks
+                                ? digits / kDigit == repeat(3, 2) && vertex == int(QuadVertex::Four)
+                                : digits >= kNumEndings && ending / kDigit == 3;
+    bool const isAtQuad = numSteps < kNumStepsToConstantMasks
+                              ? digits / kDigit == 0
+                              : digits < kNumEndings && ending / kDigit == 0;
+    if (!isAtVertex && !isAtQuad) {
+        return 0;
+    }
+    return QuadFlag(1 + (isAtVertex ? kNumEndings : 0) + ending % kDigit * kDigit + digit);
+}
+
+QuadRow FindQuadRow(int numSteps, QuadFlag out, QuadFlag in) {
+    static Rows const rows;
+    static constexpr QuadRow kNone = {nullptr, false, -1};
+    if (out == 0 || in == 0 || numSteps == 0) {
+        return kNone;
+    }
+    auto const [ofOut, pathOut] = getPath(out);
+    auto const [ofIn, pathIn] = getPath(in);
+    int const path = std::min(pathOut, pathIn);
+    bool const isBackwards = pathIn < pathOut;
+    auto const make = [isBackwards](Rows::Row const *row) {
+        return row ? QuadRow{row->hasMask ? &row->weights : nullptr, isBackwards, row->ofVertex}
+                   : kNone;
+    };
+    if (numSteps >= kNumStepsToConstantMasks) {
+        bool const isSame = pathOut / kNumEndings == pathIn / kNumEndings;
+        return isSame ? make(rows.Find(kNumStepsToConstantMasks, path)) : kNone;
+    }
+    if (ofOut == ofIn) {
+        // Beside other vertices, and beside their neighbors, a row is not for these.
+        bool const isBeside =
+            path == repeat(3, numSteps) || path == repeat(3, numSteps - 1) * kDigit + 1;
+        if (ofOut == int(QuadVertex::Other) && isBeside) {
+            return kNone;
+        }
+        if (Rows::Row const *const row = rows.Find(numSteps, kNumPaths * ofOut + path)) {
+            return make(row);
+        }
+    }
+    return make(rows.Find(numSteps, path));
+}
+
+} // namespace OpenSubdivHex::FarExt::internal
