@@ -69,7 +69,8 @@ public:
             Row &made = _rows.emplace_back();
             std::transform(row.parts, row.parts + kHexagon, made.weights,
                            [](int part) { return part / kParts; });
-            made.hasMask = row.parts[0] > 0;
+            made.hasMask = std::any_of(row.parts, row.parts + kHexagon,
+                                       [](int part) { return part > 0; });
             made.ofVertex = row.ofVertex / kParts;
         }
     }
