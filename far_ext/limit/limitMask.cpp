@@ -686,7 +686,7 @@ LimitMask FaceLimitMaskFinder::findAfterStep(Index face) const {
             QuadFlag const out = AppendToQuadFlag(quad->out, _level.numHexagonalSteps, 0);
             QuadFlag const in = AppendToQuadFlag(quad->in, _level.numHexagonalSteps, 0);
             if (out != 0 || in != 0) {
-                child.quadCorners.push_back({i, out, in});
+                child.quadCorners.push_back({i, out, in, std::max(0.0f, quad->sharpness - 1)});
             }
         }
     }

@@ -273,7 +273,7 @@ void LimitPatchGatherer::addFace(Index face, int local, bool isRing, LimitPatch 
                 patch.irregularCorners.push_back(irregular);
             }
             if (QuadCorner const *const quad = _level.FindQuadCorner(corner)) {
-                patch.quadCorners.push_back({patchFirst + i, quad->out, quad->in});
+                patch.quadCorners.push_back({patchFirst + i, quad->out, quad->in, quad->sharpness});
             }
         }
     }
@@ -461,7 +461,8 @@ void LimitPatchGatherer::AddSignature(LimitPatch &patch) {
     }
     signature.push_back(int(patch.quadCorners.size()));
     for (QuadCorner const &quad : patch.quadCorners) {
-        signature.insert(signature.end(), {quad.corner, quad.out, quad.in});
+        signature.insert(signature.end(),
+                         {quad.corner, quad.out, quad.in, getBits(quad.sharpness)});
     }
 }
 

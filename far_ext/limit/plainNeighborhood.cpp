@@ -211,6 +211,8 @@ void PlainNeighborhoodGatherer::addIrregularCorners(Index face, int local, bool 
                 result.key.push_back(char(flag & 0xff));
                 result.key.push_back(char(flag >> 8));
             }
+            auto const *const bytes = reinterpret_cast<char const *>(&quad->sharpness);
+            result.key.insert(result.key.end(), bytes, bytes + sizeof quad->sharpness);
             ++numAdded;
         }
     }

@@ -38,9 +38,9 @@ constexpr int repeat(int digit, int count) {
 }
 
 struct TableRow {
-    int numFaces;     // of the vertex
-    char const *path; // behind a star the last two digits
-    int ofVertex;     // of the corner's F-vertex in V'
+    int numFaces;        // of the vertex
+    char const *path;    // behind a star the last two digits
+    int ofVertex;        // of the corner's F-vertex in V'
     int parts[kHexagon]; // none of quads, which have the mask of all of them
 };
 constexpr double kParts = 4096;
@@ -69,8 +69,8 @@ public:
             Row &made = _rows.emplace_back();
             std::transform(row.parts, row.parts + kHexagon, made.weights,
                            [](int part) { return part / kParts; });
-            made.hasMask = std::any_of(row.parts, row.parts + kHexagon,
-                                       [](int part) { return part > 0; });
+            made.hasMask =
+                std::any_of(row.parts, row.parts + kHexagon, [](int part) { return part > 0; });
             made.ofVertex = row.ofVertex / kParts;
         }
     }

@@ -252,9 +252,9 @@ std::int64_t RowSupports::countLeastVVertexWeights(RefinementRows const &rows) c
     for (Index vVertex = 0; vVertex < rows.GetNumVVertices(); ++vVertex) {
         Index const pVert = rows.GetVVertexParent(vVertex);
         int most = 0;
-        rows.ForEachFaceSource(
-            pVert, rows.GetVertexRule(pVert),
-            [&](Index face, Index, double) { most = std::max(most, _ofFaces[face].size()); });
+        rows.ForEachFaceSource(pVert, rows.GetVertexRule(pVert), [&](Index face, Index, double) {
+            most = std::max(most, _ofFaces[face].size());
+        });
         count += most;
     }
     return count;

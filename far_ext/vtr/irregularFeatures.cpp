@@ -117,7 +117,8 @@ private:
     // Whether a path tells the mask of a corner.
     bool hasQuadRow(Index corner) const {
         QuadCorner const *const quad = _level.FindQuadCorner(corner);
-        return quad && FindQuadRow(_level.numHexagonalSteps, quad->out, quad->in).mask;
+        return quad && quad->sharpness == 0 &&
+               FindQuadRow(_level.numHexagonalSteps, quad->out, quad->in).mask;
     }
 
     Refinement const &_refinement;

@@ -109,6 +109,11 @@ struct QuadCorner {
     Far::Index corner;
     QuadFlag out; ///< with the edge that begins at the corner
     QuadFlag in;  ///< with the edge that ends there
+    /// Of the sharpest there was at the vertex of the quad, less one for each step since.
+    float sharpness;
+
+    /// Of the masks that the paths tell.
+    float GetShare() const { return std::max(0.0f, 1 - sharpness); }
 };
 
 /// \brief A boundary edge where an edge of level 0 came apart into one for each of its faces.  Edges

@@ -24,27 +24,35 @@ constexpr int kQuad = 4;
 struct Flags {
     QuadFlag out = 0;
     QuadFlag in = 0;
+    float sharpness = 0;
 };
 
-QuadFlag makeBaseFlag(Level const &level, Index vert) {
+Flags makeBaseFlags(Level const &level, Index vert) {
     Far::ConstIndexArray const faces = level.GetVertexFaces(vert);
     if (faces.size() == 0 || level.IsNonManifold(vert) ||
-        Crease::IsInfinite(level.GetVertexSharpness(vert)) ||
         !std::all_of(faces.begin(), faces.end(), [&](Index face) {
             return level.GetFaceSize(face) == kQuad && !level.IsHalfFace(face);
         })) {
-        return 0;
+        return {};
     }
     Far::ConstIndexArray const edges = level.GetVertexEdges(vert);
-    bool const isSmooth = std::none_of(edges.begin(), edges.end(), [&](Index edge) {
-        return level.IsBoundary(edge) || Crease::IsInfinite(level.GetEdgeSharpness(edge));
-    });
-    int const numFaces = isSmooth ? faces.size() : 0;
-    return MakeQuadFlag(numFaces == 4   ? QuadVertex::Four
-                        : numFaces == 3 ? QuadVertex::Three
-                        : numFaces == 5 ? QuadVertex::Five
-                        : numFaces == 6 ? QuadVertex::Six
-                                        : QuadVertex::Other);
+    float sharpness = level.GetVertexSharpness(vert);
+    for (Index edge : edges) {
+        if (level.IsBoundary(edge)) {
+            return {};
+        }
+        sharpness = std::max(sharpness, level.GetEdgeSharpness(edge));
+    }
+    if (Crease::IsInfinite(sharpness)) {
+        return {};
+    }
+    int const numFaces = faces.size();
+    QuadFlag const flag = MakeQuadFlag(numFaces == 4   ? QuadVertex::Four
+                                       : numFaces == 3 ? QuadVertex::Three
+                                       : numFaces == 5 ? QuadVertex::Five
+                                       : numFaces == 6 ? QuadVertex::Six
+                                                       : QuadVertex::Other);
+    return {flag, flag, sharpness};
 }
 
 class QuadFinder {
@@ -65,7 +73,7 @@ public:
                 Index const face = _isSparse ? _faces[std::size_t(i)] : i;
                 forEachCorner(face, [&](Index corner, Flags flags) {
                     if (flags.out != 0 || flags.in != 0) {
-                        function(QuadCorner{corner, flags.out, flags.in});
+                        function(QuadCorner{corner, flags.out, flags.in, flags.sharpness});
                     }
                 });
             }
@@ -92,8 +100,9 @@ private:
             return _flags[std::size_t(corner)];
         }
         QuadCorner const *const found = _parent.FindQuadCorner(corner);
-        return found ? Flags{found->out, found->in} : Flags();
+        return found ? Flags{found->out, found->in, found->sharpness} : Flags();
     }
+    static float fade(Flags flags) { return std::max(0.0f, flags.sharpness - 1); }
     QuadFlag append(QuadFlag flag, int digit) const {
         return AppendToQuadFlag(flag, _parent.numHexagonalSteps, digit);
     }
@@ -120,19 +129,18 @@ bool QuadFinder::readParent() {
     if (!isBase) {
         std::fill_n(_flags.data(), _flags.size(), Flags());
         for (QuadCorner const &corner : _parent.quadCorners) {
-            _flags[std::size_t(corner.corner)] = {corner.out, corner.in};
+            _flags[std::size_t(corner.corner)] = {corner.out, corner.in, corner.sharpness};
         }
         return true;
     }
-    Buffer<QuadFlag> ofVerts;
+    Buffer<Flags> ofVerts;
     ofVerts.Resize(std::size_t(_parent.numVertices));
     ParallelFor(_parent.numVertices,
-                [&](Index vert) { ofVerts[std::size_t(vert)] = makeBaseFlag(_parent, vert); });
+                [&](Index vert) { ofVerts[std::size_t(vert)] = makeBaseFlags(_parent, vert); });
     ParallelFor(_parent.numCorners, [&](Index corner) {
-        QuadFlag const flag = ofVerts[std::size_t(_parent.faceVerts[corner])];
-        _flags[std::size_t(corner)] = {flag, flag};
+        _flags[std::size_t(corner)] = ofVerts[std::size_t(_parent.faceVerts[corner])];
     });
-    return std::any_of(ofVerts.begin(), ofVerts.end(), [](QuadFlag flag) { return flag != 0; });
+    return std::any_of(ofVerts.begin(), ofVerts.end(), [](Flags flags) { return flags.out != 0; });
 }
 
 // Those that flags of the parent make which go on.
@@ -162,12 +170,11 @@ void QuadFinder::forEachCorner(Index face, FUNCTION const &function) const {
     if (face < _level.numFFaces) {
         for (Index corner = first; corner < first + size; ++corner) {
             Flags const flags = getParent(corner - first + _parent.faceFirstCorner[face]);
-            function(corner, Flags{append(flags.out, 0), append(flags.in, 0)});
+            function(corner, Flags{append(flags.out, 0), append(flags.in, 0), fade(flags)});
         }
         return;
     }
-    if (face >= _level.numFaces - _level.numVFaces || size != kHexagon ||
-        Crease::IsInfinite(_level.GetDiagonalSharpness(face))) {
+    if (face >= _level.numFaces - _level.numVFaces || size != kHexagon) {
         return;
     }
     Index const edge = _refinement.GetEFaceParent(face);
@@ -178,12 +185,12 @@ void QuadFinder::forEachCorner(Index face, FUNCTION const &function) const {
         Index const end = _parent.GetNextCorner(_parent.edgeFaces[edge][side], start);
         Index const otherStart = _parent.GetSideCorner(edge, 1 - side);
         Index const otherEnd = _parent.GetNextCorner(_parent.edgeFaces[edge][1 - side], otherStart);
-        QuadFlag const atStart = getParent(start).out;
-        QuadFlag const atEnd = getParent(end).in;
+        Flags const ofStart = getParent(start);
+        Flags const ofEnd = getParent(end);
         QuadFlag const beyond = getParent(otherEnd).in; // of the other side, at the start
-        made[places.startVertex] = {append(beyond, 3), append(atStart, 3)};
-        made[places.endFVertex] = {append(atEnd, 1), append(atEnd, 2)};
-        made[places.startFVertex] = {append(atStart, 2), append(atStart, 1)};
+        made[places.startVertex] = {append(beyond, 3), append(ofStart.out, 3), fade(ofStart)};
+        made[places.endFVertex] = {append(ofEnd.in, 1), append(ofEnd.in, 2), fade(ofEnd)};
+        made[places.startFVertex] = {append(ofStart.out, 2), append(ofStart.out, 1), fade(ofStart)};
     }
     for (int local = 0; local < kHexagon; ++local) {
         function(first + local, made[local]);

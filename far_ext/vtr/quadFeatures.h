@@ -10,7 +10,7 @@ namespace OpenSubdivHex::FarExt::internal {
 /// corners of quads came to be corners of the level, where \p faceMask has masks by these.
 ///
 /// Before the first step they begin at the corners of quads around vertices all of whose faces are quads, but for
-/// vertices that stay or are not manifold.  E-faces that have an infinitely sharp line, or lie on a boundary, have none.
+/// those on a boundary, on an infinitely sharp edge, infinitely sharp, or not manifold.
 void FindQuadCorners(FaceMask faceMask, Refinement const &refinement, Level &level);
 
 } // namespace OpenSubdivHex::FarExt::internal

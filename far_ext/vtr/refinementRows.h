@@ -74,9 +74,8 @@ public:
     void ForEachFaceSource(Index vert, VertexRule const &rule, FUNCTION function) const {
         if (rule.HasFaces()) {
             int i = 0;
-            ForEachVertexFace(vert, [&](Index face, Index row) {
-                function(face, row, rule.GetFaceWeight(i++));
-            });
+            ForEachVertexFace(
+                vert, [&](Index face, Index row) { function(face, row, rule.GetFaceWeight(i++)); });
         }
     }
     bool HasVertexFaces(Index vert) const {

@@ -76,7 +76,7 @@ struct FaceTags {
                std::equal(quads, endQuads, other.quads, other.endQuads,
                           [&](QuadCorner const &x, QuadCorner const &y) {
                               return x.corner - firstCorner == y.corner - other.firstCorner &&
-                                     x.out == y.out && x.in == y.in;
+                                     x.out == y.out && x.in == y.in && x.sharpness == y.sharpness;
                           });
     }
 
@@ -99,7 +99,8 @@ struct FaceTags {
                                         int(corner->facesAround) << 12 ^ corner->numFaces << 16);
             }
             for (QuadCorner const *quad = tags.quads; quad != tags.endQuads; ++quad) {
-                add(0, (quad->corner - tags.firstCorner) ^ quad->out << 4 ^ quad->in << 16);
+                add(quad->sharpness,
+                    (quad->corner - tags.firstCorner) ^ quad->out << 4 ^ quad->in << 16);
             }
             hash ^= hash >> 32;
             return std::size_t(hash);
@@ -149,25 +150,47 @@ void RefinementRules::makeVertexWeights() {
     if (_level.quadCorners.empty()) {
         return;
     }
-    Buffer<float> ofCorners; // negative where there is none: with so few digits they are exact
+    struct OfCorner {
+        float weight = -1; // with so few digits it is exact
+        float share = 0;
+    };
+    Buffer<OfCorner> ofCorners;
     ofCorners.Resize(std::size_t(_level.numCorners));
-    std::fill_n(ofCorners.data(), ofCorners.size(), -1.0f);
+    std::fill_n(ofCorners.data(), ofCorners.size(), OfCorner());
+    IrregularMasks masks(_level.numHexagonalSteps);
     ParallelFor(Index(_level.quadCorners.size()), [&](Index i) {
         QuadCorner const &quad = _level.quadCorners[std::size_t(i)];
-        ofCorners[std::size_t(quad.corner)] =
-            float(FindQuadRow(_level.numHexagonalSteps, quad.out, quad.in).vertexWeight);
+        ofCorners[std::size_t(quad.corner)] = {
+            float(FindQuadRow(_level.numHexagonalSteps, quad.out, quad.in).vertexWeight),
+            quad.GetShare()};
     });
     _weightsOfVerts.Resize(std::size_t(_level.numVertices));
     std::map<std::vector<double>, int> positions;
     std::vector<double> weights;
     for (Index vert = 0; vert < _level.numVertices; ++vert) {
         weights.assign(1, 1.0);
+        float share = 0;
         for (Index k = _level.vertFirstFace[vert]; k < _level.vertFirstFace[vert + 1]; ++k) {
-            weights.push_back(ofCorners[std::size_t(_level.GetVertexCorner(k))]);
+            OfCorner const &ofCorner = ofCorners[std::size_t(_level.GetVertexCorner(k))];
+            weights.push_back(ofCorner.weight);
             weights[0] -= weights.back();
+            share = ofCorner.share; // all are of one vertex of quads
         }
-        bool const isPlain =
-            weights.size() == 1 || *std::min_element(weights.begin() + 1, weights.end()) < 0;
+        bool const isPlain = share == 0 || weights.size() == 1 ||
+                             *std::min_element(weights.begin() + 1, weights.end()) < 0;
+        if (!isPlain && share < 1) {
+            int const numFaces = int(weights.size()) - 1;
+            VertexVertexMask other = GetPlainVertexMask(numFaces);
+            if (IrregularVertex const *const irregular = _level.FindIrregularVertex(vert)) {
+                VertexVertexMask const &mask = masks.Get(numFaces).vertex;
+                other.vertexWeight += irregular->weight * (mask.vertexWeight - other.vertexWeight);
+                other.faceWeight += irregular->weight * (mask.faceWeight - other.faceWeight);
+            }
+            for (std::size_t i = 0; i < weights.size(); ++i) {
+                double const rest = i == 0 ? other.vertexWeight : other.faceWeight;
+                weights[i] = rest + double(share) * (weights[i] - rest);
+            }
+        }
         int &ofVert = _weightsOfVerts[std::size_t(vert)];
         ofVert = kPlain;
         if (!isPlain) {
@@ -234,13 +257,11 @@ void RefinementRules::makeRuledVertices(bool hasIrregular) {
             }
         }
         add(sharp.vert, sharp.vertexWeight);
-        bool const isIrregular =
-            nextIrregular != endIrregular && nextIrregular->vert == sharp.vert;
+        bool const isIrregular = nextIrregular != endIrregular && nextIrregular->vert == sharp.vert;
         if (int const smooth = GetVertexWeights(sharp.vert);
             smooth != kPlain && sharp.smoothShare > 0) {
             byFace.emplace_back(_ruledVertices.size(), _vertexWeights.size());
-            addVertexWeights(smooth, sharp.smoothShare, rule,
-                             _level.GetNumVertexFaces(sharp.vert));
+            addVertexWeights(smooth, sharp.smoothShare, rule, _level.GetNumVertexFaces(sharp.vert));
         } else if (isIrregular) {
             addIrregular(*nextIrregular, sharp.smoothShare, rule);
         }
@@ -330,7 +351,7 @@ private:
     void addRow(std::vector<double> const &row);
     static void addMask(double const (&mask)[kHexagon], int corner, bool isBackwards, double share,
                         std::vector<double> &row);
-    void addIrregularWeights(IrregularCorner const &irregular, int corner,
+    void addIrregularWeights(IrregularCorner const &irregular, int corner, double factor,
                              std::vector<double> &row);
     // The entries of one corner.
     struct Sectors {
@@ -418,7 +439,8 @@ bool RefinementRules::DenseRuleMaker::hasOwnRows(FaceTags const &tags) const {
     }
     return tags.size == kHexagon &&
            std::any_of(tags.quads, tags.endQuads, [this](QuadCorner const &quad) {
-               return FindQuadRow(_level.numHexagonalSteps, quad.out, quad.in).mask != nullptr;
+               return quad.GetShare() > 0 &&
+                      FindQuadRow(_level.numHexagonalSteps, quad.out, quad.in).mask != nullptr;
            });
 }
 
@@ -452,8 +474,8 @@ void RefinementRules::DenseRuleMaker::addRule(FaceTags const &tags) {
         bool const isIrregular = irregular != tags.endIrregular && irregular->corner == corner;
         std::size_t const circulantRow =
             _rules._circulants[std::size_t(size)] + std::size_t(size - i);
-        QuadRow const byPath =
-            size == kHexagon ? readQuadRow(quad, tags.endQuads, corner) : QuadRow{nullptr, false, -1};
+        QuadRow const byPath = size == kHexagon ? readQuadRow(quad, tags.endQuads, corner)
+                                                : QuadRow{nullptr, false, -1};
         if (sharp == 0 && towards == 0 && !hasOneFace && !isIrregular && !byPath.mask) {
             _rules._rows.push_back(circulantRow);
             continue;
@@ -461,7 +483,7 @@ void RefinementRules::DenseRuleMaker::addRule(FaceTags const &tags) {
         auto const circulant = _rules._weights.begin() + std::ptrdiff_t(circulantRow);
         std::vector<double> row(circulant, circulant + size);
         if (byPath.mask) {
-            addMask(*byPath.mask, i, byPath.isBackwards, 1, row);
+            addMask(*byPath.mask, i, byPath.isBackwards, quad->GetShare(), row);
         }
         for (double &weight : row) {
             weight *= 1 - sharp - towards;
@@ -483,7 +505,8 @@ void RefinementRules::DenseRuleMaker::addRule(FaceTags const &tags) {
             addOneFace({sectors, sector}, i, row);
         }
         if (isIrregular) {
-            addIrregularWeights(*irregular++, i, row);
+            double const besidePath = byPath.mask ? 1 - double(quad->GetShare()) : 1;
+            addIrregularWeights(*irregular++, i, besidePath, row);
         }
         addRow(row);
     }
@@ -536,7 +559,8 @@ void RefinementRules::DenseRuleMaker::addMask(double const (&mask)[kHexagon], in
 
 // The corner is number \p corner of its face, whose weights these are so far.
 void RefinementRules::DenseRuleMaker::addIrregularWeights(IrregularCorner const &irregular,
-                                                          int corner, std::vector<double> &row) {
+                                                          int corner, double factor,
+                                                          std::vector<double> &row) {
     using Kind = IrregularCorner::Kind;
     Kind const kind = irregular.kind;
     double const(*mask)[kHexagon] = nullptr;
@@ -549,7 +573,7 @@ void RefinementRules::DenseRuleMaker::addIrregularWeights(IrregularCorner const 
     }
     bool const isBackwards =
         kind == Kind::kBeforeVertex || kind == Kind::kBehindQuad || kind == Kind::kOneBeforeQuad;
-    addMask(*mask, corner, isBackwards, irregular.weight, row);
+    addMask(*mask, corner, isBackwards, factor * irregular.weight, row);
 }
 
 RefinementRules::RefinementRules(Level const &parent, HexSchemeOptions schemeOptions,

@@ -41,7 +41,8 @@ private:
 /// The last source is its parent.  Neighbors come first, so that it does not matter for the sum which of
 /// them is left and right.
 struct VertexRule {
-    double faceWeight; ///< of the F-vertex in each face; in each but for faceWeights, where these are
+    double
+        faceWeight; ///< of the F-vertex in each face; in each but for faceWeights, where these are
     int numSources;
     Far::Index sources[3];
     double weights[3];

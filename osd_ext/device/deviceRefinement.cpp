@@ -396,10 +396,9 @@ void Maker::listVertex(Index vert) {
     };
     // Those with weights by face share these.
     std::uint32_t const firstWeight =
-        rule.faceWeights
-            ? find(_weightsByFace, int(rule.faceWeights - _rules.GetAllVertexWeights().data()),
-                   addAll)
-            : addAll();
+        rule.faceWeights ? find(_weightsByFace,
+                                int(rule.faceWeights - _rules.GetAllVertexWeights().data()), addAll)
+                         : addAll();
     std::uint32_t const flag = rule.faceWeights ? DeviceVertex::kEachHasAWeight : 0;
     _result.vertices.push_back({std::uint32_t(_refinement.GetVertexChildVertex(vert)),
                                 std::uint32_t(rule.numSources), std::uint32_t(numCorners) | flag,

@@ -161,9 +161,9 @@ void makeFaces(RefinementRules const &rules, PreparedRefinement &prepared) {
 
 WeightedVertex makeWeightedVertex(VertexRule const &rule, RefinementRules const &rules,
                                   Refinement const &refinement, Index vert) {
-    int const firstFaceWeight =
-        rule.faceWeights ? int(rule.faceWeights - rules.GetAllVertexWeights().data())
-                         : WeightedVertex::kEqual;
+    int const firstFaceWeight = rule.faceWeights
+                                    ? int(rule.faceWeights - rules.GetAllVertexWeights().data())
+                                    : WeightedVertex::kEqual;
     WeightedVertex vertex = {vert,
                              refinement.GetVertexChildVertex(vert),
                              float(rule.weights[rule.numSources - 1]),
@@ -202,8 +202,9 @@ void makeVertices(RefinementRules const &rules, Refinement const &refinement,
                     ++nextRuled;
                 }
                 bool const isRuled = nextRuled != endRuled && nextRuled->vert == vert;
-                prepared.weightedVertices.items.push_back(makeWeightedVertex(
-                    isRuled ? nextRuled->rule : rules.GetVertexRule(vert), rules, refinement, vert));
+                prepared.weightedVertices.items.push_back(
+                    makeWeightedVertex(isRuled ? nextRuled->rule : rules.GetVertexRule(vert), rules,
+                                       refinement, vert));
             });
         prepared.vertexRuns.EndGroup();
         prepared.weightedVertices.EndGroup();

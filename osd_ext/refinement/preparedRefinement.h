@@ -118,7 +118,7 @@ struct PreparedRefinement {
     Far::Index numVVertices = 0; ///< F-vertices follow in the child
     FarExt::internal::Level const *parent = nullptr;
 
-    std::vector<float> faceWeights;        ///< of weighted faces, those of a rule once
+    std::vector<float> faceWeights; ///< of weighted faces, those of a rule once
     /// As RefinementRules::GetAllVertexWeights(): of vertices with weights by face.
     std::vector<float> vertexWeights;
     std::vector<DenseFaceMask> denseMasks; ///< of hexagons, by the number of their rule

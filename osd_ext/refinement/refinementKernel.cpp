@@ -189,8 +189,8 @@ void refineVertexRun(RefinementTask const &task, IndexRun run) {
     Index const *corners = task.refinement->vertCorners.data() + firstFaces[run.begin];
     for (Index vert = run.begin; vert < run.end; ++vert) {
         int const numFaces = firstFaces[vert + 1] - firstFaces[vert];
-        auto const sum = sumOfPlainVertex<ACCESS>(ACCESS::Load(src, vert), fVertices, corners,
-                                                  numFaces);
+        auto const sum =
+            sumOfPlainVertex<ACCESS>(ACCESS::Load(src, vert), fVertices, corners, numFaces);
         corners += numFaces;
         auto const point = Spread(inverses[numFaces]) * sum;
         ACCESS::StoreExactly(dst, vert, point);
@@ -216,8 +216,7 @@ void refineWeightedVertex(RefinementTask const &task, WeightedVertex const &vert
             return ACCESS::LoadExactly(fVertices, parent.GetVertexCorner(k));
         };
         if (vertex.firstFaceWeight != WeightedVertex::kEqual) {
-            float const *weight =
-                task.refinement->vertexWeights.data() + vertex.firstFaceWeight;
+            float const *weight = task.refinement->vertexWeights.data() + vertex.firstFaceWeight;
             for (Index k = firstFace[0]; k < firstFace[1]; ++k) {
                 point = point + Spread(*weight++) * load(k);
             }

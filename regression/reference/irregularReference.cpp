@@ -233,7 +233,8 @@ bool isAll(char digit, std::string const &digits) {
 }
 
 /// The name of a path's row: from four steps on the digits before the last two are a star, where they are all alike.
-std::string rowOfPath(QuadPath const &path) {
+std::string rowOfPath(QuadPath const &quadPath) {
+    std::string const &path = quadPath.steps;
     if (path.size() < 2) {
         return {};
     }
@@ -265,13 +266,14 @@ PathRow const *findRow(QuadPath const &out, QuadPath const &in) {
         return nullptr;
     }
     int kind = 4;
-    if (!isStar && out[0] == in[0]) {
+    char const kindOfOut = out.steps[0];
+    if (!isStar && kindOfOut == in.steps[0]) {
         // At a vertex of another kind, and beside it.
         std::string const before = row.substr(0, row.size() - 1);
-        if (out[0] == 'o' && isAll('3', before) && (row.back() == '3' || row.back() == '1')) {
+        if (kindOfOut == 'o' && isAll('3', before) && (row.back() == '3' || row.back() == '1')) {
             return nullptr;
         }
-        kind = out[0] == 'o' ? 4 : out[0] - '0';
+        kind = kindOfOut == 'o' ? 4 : kindOfOut - '0';
     }
     for (int const wanted : {kind, 4}) {
         for (PathRow const &entry : kPathRows) {

@@ -62,7 +62,17 @@ NewPointBesideQuad(int numSteps, std::vector<Eigen::RowVectorXd> const &face, in
 ///
 /// 0: in the smaller copy of the face.  In the hexagon made for its edge: 1 at the new point, along the copy; 2 there,
 /// towards the old vertex; 3 at the old vertex, towards that point.
-using QuadPath = std::string;
+struct QuadPath {
+    std::string steps;
+    float sharpness = 0; ///< of the sharpest at the quad's vertex, less one for each step
+
+    bool IsEmpty() const { return steps.empty(); }
+    double GetShare() const { return sharpness < 1 ? 1 - double(sharpness) : 0; }
+    /// After another step.
+    QuadPath Append(char digit) const {
+        return IsEmpty() ? *this : QuadPath{steps + digit, sharpness > 1 ? sharpness - 1 : 0};
+    }
+};
 
 /// The point beside corner \p i of a hexagon by the paths of its edges there; nothing where they have no rule.
 std::optional<Eigen::RowVectorXd> NewPointByPath(std::vector<Eigen::RowVectorXd> const &face, int i,

@@ -133,7 +133,7 @@ bool isBesideQuad(ReferenceMesh const &mesh, HalfedgeHandle corner) {
     return mesh.numSteps > 0 && mesh.valence(face) == 4 && !mesh.is_boundary(face);
 }
 
-QuadPath longer(QuadPath const &path, char digit) { return path.empty() ? path : path + digit; }
+QuadPath longer(QuadPath const &path, char digit) { return path.Append(digit); }
 
 /// Of a half-edge, at its start or its end.
 QuadPath pathOf(ReferenceMesh const &mesh, HalfedgeHandle halfedge, bool isStart) {
@@ -151,8 +151,11 @@ QuadPath pathOf(ReferenceMesh const &mesh, HalfedgeHandle halfedge, bool isStart
             return {};
         }
     }
-    bool const hasKind = !mesh.is_boundary(vertex) && numFaces >= 3 && numFaces <= 6;
-    return hasKind ? std::to_string(numFaces) : "o";
+    if (mesh.is_boundary(vertex)) {
+        return {};
+    }
+    bool const hasKind = numFaces >= 3 && numFaces <= 6;
+    return {hasKind ? std::to_string(numFaces) : "o"};
 }
 
 /// The rules of Smooth for quads, and for hexagons that are beside a quad or have an irregular vertex: an

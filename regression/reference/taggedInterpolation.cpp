@@ -314,19 +314,21 @@ private:
             std::optional<Point> const byPath = hasIrregularRules() && points.size() == 6
                                                     ? NewPointByPath(points, corner.place, out, in)
                                                     : std::nullopt;
-            Point const smooth = isQuad
-                                     ? NewPointOfQuad(_mesh.numHexagonalSteps, points, corner.place)
-                                     : byPath.value_or(maskPoint(points, corner.place));
+            Point const smooth =
+                isQuad ? NewPointOfQuad(_mesh.numHexagonalSteps, points, corner.place)
+                       : mixByPath(byPath, out.GetShare(), maskPoint(points, corner.place));
             Point const plain =
                 atOneFace(points, corner, towards * vertex + (1 - towards) * smooth);
-            if (!hasIrregularRules() || points.size() != 6 || byPath) {
+            if (!hasIrregularRules() || points.size() != 6) {
                 return plain;
             }
             std::vector<Side> corners;
             for (int i = 0; i < 6; ++i) {
                 corners.push_back({corner.face, i});
             }
-            return _irregularities.Apply(points, corners, 0, corner.place, plain);
+            double const rest = byPath ? 1 - out.GetShare() : 1;
+            return plain +
+                   rest * (_irregularities.Apply(points, corners, 0, corner.place, plain) - plain);
         }
         Edge const &line = _mesh.edges[face.edges[0]];
         if (line.sides.size() == 1) {
@@ -341,22 +343,29 @@ private:
         int const places[] = {0, 3, 4, 5};
         std::size_t const place = std::size_t(corner.place);
         std::optional<Point> byPath;
+        double share = 0;
         if (hasIrregularRules()) {
             auto const [out, in] = pathsOf(corner);
             byPath = NewPointByPath(hexagon, places[place], out, in);
+            share = out.GetShare();
         }
-        Point const smooth = byPath.value_or(maskPoint(hexagon, places[place]));
+        Point const smooth = mixByPath(byPath, share, maskPoint(hexagon, places[place]));
         double const sharp = _isVarying ? 0 : std::min(1.0, double(line.sharpness));
         Point const plain = sharp * halfPoint(face, corner.place) + towards * vertex +
                             (1 - sharp - towards) * smooth + fromOneFace(face, corner);
-        if (!hasIrregularRules() || byPath) {
+        if (!hasIrregularRules()) {
             return plain;
         }
         int const self = corner.face;
         int const partner = line.sides[isFirst ? 1 : 0].face;
-        return _irregularities.Apply(
+        Point const irregular = _irregularities.Apply(
             hexagon, {{partner, 1}, {partner, 2}, {partner, 3}, {self, 1}, {self, 2}, {self, 3}},
             line.sharpness, places[corner.place], plain);
+        return plain + (byPath ? 1 - share : 1) * (irregular - plain);
+    }
+
+    static Point mixByPath(std::optional<Point> const &byPath, double share, Point const &rest) {
+        return byPath ? Point(share * *byPath + (1 - share) * rest) : rest;
     }
 
     bool hasIrregularRules() const {
@@ -478,11 +487,14 @@ private:
         for (int vertex : around) {
             sum += _result.row(vertex);
         }
-        if (hasIrregularRules()) {
-            if (std::optional<Point> const byPath = vertexByPaths(v)) {
-                return *byPath;
-            }
-        }
+        std::optional<Point> const byPath = hasIrregularRules() ? vertexByPaths(v) : std::nullopt;
+        double const share = byPath ? pathsOf(_mesh.vertices[v].corners[0]).first.GetShare() : 0;
+        return share == 0 ? otherSmoothVertex(v, around, sum)
+                          : share * *byPath + (1 - share) * otherSmoothVertex(v, around, sum);
+    }
+
+    /// Where no paths tell it.
+    Point otherSmoothVertex(int v, std::set<int> const &around, Point const &sum) const {
         Point const plain = sum / double(around.size() + 1);
         Irregularities::Vertex const irregular =
             hasIrregularRules() ? _irregularities.FindVertex(v) : Irregularities::Vertex();

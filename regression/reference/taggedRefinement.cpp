@@ -152,7 +152,7 @@ void Refinement::makeVertices() {
     }
 }
 
-QuadPath longer(QuadPath const &path, char digit) { return path.empty() ? path : path + digit; }
+QuadPath longer(QuadPath const &path, char digit) { return path.Append(digit); }
 
 /// Of the parent: those that it has, or those that begin there.
 void Refinement::findBasePaths() {
@@ -168,21 +168,22 @@ void Refinement::findBasePaths() {
             std::all_of(vertex.corners.begin(), vertex.corners.end(), [&](Side corner) {
                 return _parent.faces[corner.face].vertices.size() == 4;
             });
-        if (_parent.numHexagonalSteps > 0 || !areQuads || vertex.isNonManifold ||
-            isInfinite(vertex.sharpness)) {
-            continue;
-        }
-        bool isSmooth = true;
+        bool isInside = _parent.numHexagonalSteps == 0 && areQuads && !vertex.isNonManifold;
+        float sharpness = vertex.sharpness;
         for (Side corner : vertex.corners) {
             for (Side side : {corner, previousSide(_parent, corner)}) {
                 Edge const &edge = _parent.edges[_parent.faces[side.face].edges[side.place]];
-                isSmooth = isSmooth && edge.sides.size() == 2 && !isInfinite(edge.sharpness);
+                isInside = isInside && edge.sides.size() == 2;
+                sharpness = std::max(sharpness, edge.sharpness);
             }
         }
+        if (!isInside || isInfinite(sharpness)) {
+            continue;
+        }
         std::size_t const size = vertex.corners.size();
-        bool const hasKind = isSmooth && size >= 3 && size <= 6;
+        bool const hasKind = size >= 3 && size <= 6;
         for (Side corner : vertex.corners) {
-            QuadPath const path = hasKind ? std::to_string(size) : "o";
+            QuadPath const path = {hasKind ? std::to_string(size) : "o", sharpness};
             _pathsOut[corner.face][corner.place] = path;
             _pathsIn[corner.face][corner.place] = path;
         }
