@@ -78,25 +78,28 @@ public:
     std::int64_t GetNumTriangles(int level) const;
 
 protected:
-    /// Of a device, of which Prepare() is still to be called.
+    /// On a device; prepare() is still to be called.
     DeviceRefinementEvaluator(std::unique_ptr<internal::Device> device,
                               FarExt::TopologyRefiner const &refiner);
     ~DeviceRefinementEvaluator();
 
-    /// @name With devices, and what these call buffers
-    /// @{
+    /// The device that was given.
     internal::Device &getDevice() const;
+    /// Loads what the device needs for all levels.
     bool prepare(Options options, FarExt::CallStatus *status);
+    /// BufferEvaluator::Evaluate() of what the device calls buffers.
     bool evaluate(internal::DeviceValues const &src, internal::DeviceValues const &dst, int level,
                   FarExt::CallStatus *status);
+    /// BufferEvaluator::EvaluateAllLevels() of these.
     bool evaluateAllLevels(internal::DeviceValues const &src, internal::DeviceValues const &dst,
                            FarExt::CallStatus *status);
+    /// BufferEvaluator::EvaluateLimit() of these, to the points, or with du and dv behind them.
     bool evaluateLimit(internal::DeviceValues const &src,
                        std::vector<internal::DeviceValues> const &outputs, int level,
                        FarExt::CallStatus *status);
+    /// GLRefinementEvaluator::MakeTriangleIndices() of one.
     bool makeTriangleIndices(internal::DeviceBufferName dst, int level, int vertexOffset,
                              FarExt::CallStatus *status);
-    /// @}
 
 private:
     std::unique_ptr<internal::DeviceEvaluator> _evaluator;
