@@ -34,6 +34,8 @@ fi
 # Where all classes within a class are private it links to a list of them that it does not make.
 grep -L 'name="nested-classes"' $out/html/class*.html | xargs sed -i \
     's|<a href="#nested-classes">Classes</a> &#124;||'
+# It links sources to friends that classes define, for which it makes no place.
+sed -i -E 's|<a [^>]*>(operator[=!]=)</a>|\1|g' $out/html/*_source.html
 # Doxygen does not ask for the documentation of enumerators.
 missing=$(awk '/<enumvalue /{said = 0} /<para>/{said = 1} /<name>/{name = $0}
     /<\/enumvalue>/{if (!said) print name}' $out/xml/*.xml | sed 's/<[^>]*>//g')
