@@ -75,44 +75,48 @@ struct KnownPolygon {
     Pair maps[kMaxSize][2];
 };
 
-Pair getCenter(int size) {
-    return size <= KnownPolygon::kMaxSize ? KnownPolygon::Get(size).center
-                                          : BasePolygon(size).GetCenter();
+// Of another one.
+struct AnyPolygon {
+    explicit AnyPolygon(int size) : polygon(size), center(polygon.GetCenter()) {}
+
+    BasePolygon const polygon;
+    Pair const center;
+};
+
+void setSectorMap(KnownPolygon const &polygon, BasePoint &point) {
+    std::copy_n(polygon.maps[point.sector], 2, point.toCoords);
+}
+void setSectorMap(AnyPolygon const &polygon, BasePoint &point) {
+    makeSectorMap(polygon.polygon, point.sector, point.toCoords);
 }
 
-void findSectorMap(int size, int sector, Pair (&rows)[2]) {
-    if (size <= KnownPolygon::kMaxSize) {
-        auto const &known = KnownPolygon::Get(size).maps[sector];
-        rows[0] = known[0];
-        rows[1] = known[1];
-    } else {
-        makeSectorMap(BasePolygon(size), sector, rows);
-    }
+// Calls function(plane of the face).
+template <typename FUNCTION>
+BasePoint withPolygon(int size, FUNCTION const &function) {
+    return size <= KnownPolygon::kMaxSize ? function(KnownPolygon::Get(size))
+                                          : function(AnyPolygon(size));
 }
 
-} // namespace
-
-BasePoint FindBasePoint(int size, double u, double v, double tolerance) {
-    Pair const center = getCenter(size);
+template <typename POLYGON>
+BasePoint findBasePoint(POLYGON const &polygon, int size, double u, double v, double tolerance) {
     // Of finite coordinates the products are finite.
-    double const x = std::clamp(u - center[0], -kFar, kFar);
-    double const y = std::clamp(v - center[1], -kFar, kFar);
-    auto const findIn = [&](int sector) {
-        BasePoint point = {sector, {}, {}};
-        findSectorMap(size, sector, point.toCoords);
-        for (std::size_t i = 0; i < 2; ++i) {
-            point.coords[i] = point.toCoords[i][0] * x + point.toCoords[i][1] * y;
-        }
-        return point;
-    };
+    double const x = std::clamp(u - polygon.center[0], -kFar, kFar);
+    double const y = std::clamp(v - polygon.center[1], -kFar, kFar);
     BasePoint best;
+    auto const findIn = [&](int sector, BasePoint &point) {
+        point.sector = sector;
+        setSectorMap(polygon, point);
+        auto const &[a, b] = point.toCoords;
+        point.coords = {a[0] * x + a[1] * y, b[0] * x + b[1] * y};
+    };
     if (size == 4) { // by far the most
         constexpr int kSectors[2][2] = {{0, 1}, {3, 2}};
-        best = findIn(kSectors[y > x ? 1 : 0][y > -x ? 1 : 0]);
+        findIn(kSectors[y > x ? 1 : 0][y > -x ? 1 : 0], best);
     } else {
-        best = findIn(0);
+        findIn(0, best);
         for (int sector = 1; sector < size; ++sector) {
-            BasePoint const point = findIn(sector);
+            BasePoint point;
+            findIn(sector, point);
             if (std::min(point.coords[0], point.coords[1]) >
                 std::min(best.coords[0], best.coords[1])) {
                 best = point;
@@ -125,15 +129,25 @@ BasePoint FindBasePoint(int size, double u, double v, double tolerance) {
     best.coords = clampToSector(best.coords);
     // Between two sectors it is the second, as in tessellations.
     if (best.coords[0] == 0) {
-        return MakeBasePoint(size, (best.sector + 1) % size, {best.coords[1], 0});
+        best = {(best.sector + 1) % size, {best.coords[1], 0}, {}};
+        setSectorMap(polygon, best);
     }
     return best;
 }
 
+} // namespace
+
+BasePoint FindBasePoint(int size, double u, double v, double tolerance) {
+    return withPolygon(
+        size, [&](auto const &polygon) { return findBasePoint(polygon, size, u, v, tolerance); });
+}
+
 BasePoint MakeBasePoint(int size, int sector, Pair const &coords) {
-    BasePoint point = {sector, coords, {}};
-    findSectorMap(size, sector, point.toCoords);
-    return point;
+    return withPolygon(size, [&](auto const &polygon) {
+        BasePoint point = {sector, coords, {}};
+        setSectorMap(polygon, point);
+        return point;
+    });
 }
 
 CellStep FindCellStep(bool isWhole, int sector, Pair const &coords) {
@@ -228,7 +242,8 @@ void CellStencil::Place::AddDerivatives(std::size_t corner, double weight,
     Pair ofCorner[2] = {toCoords[0], toCoords[1]};
     if (type->IsWhole()) {
         // The corner has the coordinates of its own sector, larger by what the steps have made them.
-        findSectorMap(type->GetNumCorners(), int(corner), ofCorner);
+        auto const &ofSector = MakeBasePoint(type->GetNumCorners(), int(corner), {}).toCoords;
+        std::copy_n(ofSector, 2, ofCorner);
         for (Pair &row : ofCorner) {
             row = {std::ldexp(row[0], depth), std::ldexp(row[1], depth)};
         }
