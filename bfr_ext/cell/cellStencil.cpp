@@ -9,6 +9,7 @@
 namespace OpenSubdivHex::BfrExt::internal {
 
 using FarExt::internal::BasePolygon;
+using FarExt::internal::UsePolygon;
 
 namespace {
 
@@ -46,77 +47,30 @@ Pair clampToHalf(Pair const &coords) {
     return {std::min(std::max(coords[0], 0.5 * h), 1 - 0.5 * h), h};
 }
 
-// The linear map from u and v, relative to the centre, to the coordinates in a sector.
-void makeSectorMap(BasePolygon const &polygon, int sector, Pair (&rows)[2]) {
-    Pair const start = polygon.GetCorner(sector);
-    Pair const end = polygon.GetCorner((sector + 1) % polygon.GetSize());
-    double const determinant = start[0] * end[1] - start[1] * end[0];
-    rows[0] = {end[1] / determinant, -end[0] / determinant};
-    rows[1] = {-start[1] / determinant, start[0] / determinant};
-}
-
-// The plane of a face of a common size: places are found in it by the million.
-struct KnownPolygon {
-    static constexpr int kMaxSize = 8;
-
-    explicit KnownPolygon(int size) : center(BasePolygon(size).GetCenter()) {
-        for (int sector = 0; sector < size; ++sector) {
-            makeSectorMap(BasePolygon(size), sector, maps[sector]);
-        }
-    }
-
-    static KnownPolygon const &Get(int size) {
-        static KnownPolygon const kAll[] = {KnownPolygon(3), KnownPolygon(4), KnownPolygon(5),
-                                            KnownPolygon(6), KnownPolygon(7), KnownPolygon(8)};
-        return kAll[size - 3];
-    }
-
-    Pair center;
-    Pair maps[kMaxSize][2];
-};
-
-// Of another one.
-struct AnyPolygon {
-    explicit AnyPolygon(int size) : polygon(size), center(polygon.GetCenter()) {}
-
-    BasePolygon const polygon;
-    Pair const center;
-};
-
-void setSectorMap(KnownPolygon const &polygon, BasePoint &point) {
-    std::copy_n(polygon.maps[point.sector], 2, point.toCoords);
-}
-void setSectorMap(AnyPolygon const &polygon, BasePoint &point) {
-    makeSectorMap(polygon.polygon, point.sector, point.toCoords);
-}
-
-// Calls function(plane of the face).
-template <typename FUNCTION>
-BasePoint withPolygon(int size, FUNCTION const &function) {
-    return size <= KnownPolygon::kMaxSize ? function(KnownPolygon::Get(size))
-                                          : function(AnyPolygon(size));
+template <typename POLYGON>
+BasePoint makeBasePoint(POLYGON const &polygon, int sector, Pair const &coords) {
+    std::array<Pair, 2> const &map = polygon.GetSectorMap(sector);
+    return {sector, coords, {map[0], map[1]}};
 }
 
 template <typename POLYGON>
 BasePoint findBasePoint(POLYGON const &polygon, int size, double u, double v, double tolerance) {
+    Pair const center = polygon.GetCenter();
     // Of finite coordinates the products are finite.
-    double const x = std::clamp(u - polygon.center[0], -kFar, kFar);
-    double const y = std::clamp(v - polygon.center[1], -kFar, kFar);
-    BasePoint best;
-    auto const findIn = [&](int sector, BasePoint &point) {
-        point.sector = sector;
-        setSectorMap(polygon, point);
-        auto const &[a, b] = point.toCoords;
-        point.coords = {a[0] * x + a[1] * y, b[0] * x + b[1] * y};
+    double const x = std::clamp(u - center[0], -kFar, kFar);
+    double const y = std::clamp(v - center[1], -kFar, kFar);
+    auto const findIn = [&](int sector) {
+        auto const &[a, b] = polygon.GetSectorMap(sector);
+        return BasePoint{sector, {a[0] * x + a[1] * y, b[0] * x + b[1] * y}, {a, b}};
     };
+    BasePoint best;
     if (size == 4) { // by far the most
         constexpr int kSectors[2][2] = {{0, 1}, {3, 2}};
-        findIn(kSectors[y > x ? 1 : 0][y > -x ? 1 : 0], best);
+        best = findIn(kSectors[y > x ? 1 : 0][y > -x ? 1 : 0]);
     } else {
-        findIn(0, best);
+        best = findIn(0);
         for (int sector = 1; sector < size; ++sector) {
-            BasePoint point;
-            findIn(sector, point);
+            BasePoint const point = findIn(sector);
             if (std::min(point.coords[0], point.coords[1]) >
                 std::min(best.coords[0], best.coords[1])) {
                 best = point;
@@ -129,8 +83,7 @@ BasePoint findBasePoint(POLYGON const &polygon, int size, double u, double v, do
     best.coords = clampToSector(best.coords);
     // Between two sectors it is the second, as in tessellations.
     if (best.coords[0] == 0) {
-        best = {(best.sector + 1) % size, {best.coords[1], 0}, {}};
-        setSectorMap(polygon, best);
+        return makeBasePoint(polygon, (best.sector + 1) % size, {best.coords[1], 0});
     }
     return best;
 }
@@ -138,16 +91,13 @@ BasePoint findBasePoint(POLYGON const &polygon, int size, double u, double v, do
 } // namespace
 
 BasePoint FindBasePoint(int size, double u, double v, double tolerance) {
-    return withPolygon(
+    return UsePolygon(
         size, [&](auto const &polygon) { return findBasePoint(polygon, size, u, v, tolerance); });
 }
 
 BasePoint MakeBasePoint(int size, int sector, Pair const &coords) {
-    return withPolygon(size, [&](auto const &polygon) {
-        BasePoint point = {sector, coords, {}};
-        setSectorMap(polygon, point);
-        return point;
-    });
+    return UsePolygon(size,
+                      [&](auto const &polygon) { return makeBasePoint(polygon, sector, coords); });
 }
 
 CellStep FindCellStep(bool isWhole, int sector, Pair const &coords) {
@@ -242,10 +192,10 @@ void CellStencil::Place::AddDerivatives(std::size_t corner, double weight,
     Pair ofCorner[2] = {toCoords[0], toCoords[1]};
     if (type->IsWhole()) {
         // The corner has the coordinates of its own sector, larger by what the steps have made them.
-        auto const &ofSector = MakeBasePoint(type->GetNumCorners(), int(corner), {}).toCoords;
-        std::copy_n(ofSector, 2, ofCorner);
-        for (Pair &row : ofCorner) {
-            row = {std::ldexp(row[0], depth), std::ldexp(row[1], depth)};
+        BasePoint const point = MakeBasePoint(type->GetNumCorners(), int(corner), {});
+        for (std::size_t i = 0; i < 2; ++i) {
+            ofCorner[i] = {std::ldexp(point.toCoords[i][0], depth),
+                           std::ldexp(point.toCoords[i][1], depth)};
         }
     }
     for (std::size_t k = 0; k < 2; ++k) {
