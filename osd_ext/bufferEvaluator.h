@@ -25,12 +25,11 @@ struct BufferView {
 
 } // namespace internal
 
-/// \brief The functions that evaluators of refined levels have in common: RefinementEvaluator,
-/// GLRefinementEvaluator and CudaRefinementEvaluator, each of which is its EVALUATOR.
+/// \brief Functions of RefinementEvaluator, GLRefinementEvaluator and CudaRefinementEvaluator that evaluate levels.
 ///
-/// **Buffers.** Sources, SRC, are BINDING::Source, and destinations, DST, DU and DV, BINDING::Buffer: floats,
-/// addresses or names.  In place of them all functions take pointers to objects that bind such, as Osd's
-/// vertex buffers do; a null pointer is a buffer that is null.
+/// **Buffers.** Sources SRC are of type BINDING::Source, destinations DST, DU and DV of type BINDING::Buffer: floats,
+/// addresses or names.  All functions also take pointers to objects that bind one of these, as Osd's vertex buffers do; a
+/// null pointer is a null buffer.
 ///
 /// **Elements.** Element j of a buffer is the \c length floats from <tt>offset + j * stride</tt> on.
 /// Nothing else is written.  Source and destination may be one buffer, as long as no float is both read
@@ -74,10 +73,9 @@ public:
     }
 
     /// @name The limit surface
-    /// Of the vertices of a level, with full topology, whose values it makes on the way: points, and
-    /// first derivatives on side 0, as FarExt::LimitStencilTableFactory says; what comes out is what
-    /// its table gives, up to the rounding of floats, of which derivatives have more at each level,
-    /// as they are differences of near values.  The cross product of the derivatives is the normal.
+    /// Limit points of the vertices of a level with full topology, and first derivatives on side 0.  The cross product of
+    /// the derivatives is the normal.  Results are those of a table of FarExt::LimitStencilTableFactory, except for
+    /// rounding, which grows with the level in derivatives, because these are differences of near values.
     ///
     /// The first frame of a level finds the masks, on the processor, and needs the refiner as it was.
     ///

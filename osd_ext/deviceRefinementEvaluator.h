@@ -19,7 +19,7 @@ namespace internal {
 class Device;
 class DeviceEvaluator;
 
-/// What a device calls a buffer: a name of OpenGL, or an address.
+/// A buffer of a device: a name of OpenGL, or an address.
 using DeviceBufferName = std::uint64_t;
 
 inline DeviceBufferName GetBufferName(unsigned name) { return name; }
@@ -39,7 +39,7 @@ struct DeviceValues {
 
 } // namespace internal
 
-/// \brief What GLRefinementEvaluator and CudaRefinementEvaluator have in common: refined levels on a
+/// \brief The common base of GLRefinementEvaluator and CudaRefinementEvaluator: refined levels on a
 /// device, without a stencil table.  BufferEvaluator has their functions for frames.
 ///
 /// Control values are refined level by level.  Of the topology, the device has about 8 bytes for
@@ -63,7 +63,7 @@ struct DeviceValues {
 /// call for a level needs the refiner as it was.
 class OPENSUBDIVHEX_API DeviceRefinementEvaluator {
 public:
-    /// What is evaluated.
+    /// The kind of data, and the channel.
     using Options = RefinementEvaluator::Options;
 
     /// The last level that can be evaluated, that of the refiner when this was made.

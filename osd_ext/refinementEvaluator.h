@@ -19,14 +19,13 @@ namespace Osd = OpenSubdiv::Osd;
 
 namespace OsdExt {
 
-/// \brief Computes the primvars of refined levels straight from the control values, level by level,
-/// without a stencil table: the fastest way to refine a whole mesh again and again.
+/// \brief Evaluates refined levels straight from control values, without a stencil table: the fastest way to refine a whole
+/// mesh frame after frame.
 ///
-/// Values are those that a stencil table of the same refiner gives, with all rules for
-/// boundaries, creases, corners and face-varying seams, up to the rounding of floats (1e-6 of the
-/// largest control value), for values up to half of the largest float.  Two meshes that share a
-/// sharp border line, with the same sharpness at its vertices, get the same values on it, bit for
-/// bit, however either numbers and orients it.
+/// Results are those of a stencil table of the same refiner, with all rules for boundaries, creases, corners and
+/// face-varying seams, within rounding (1e-6 of the largest control value), for values up to half of the largest float.
+/// Two meshes that share a sharp border line, with the same sharpness at its vertices, get bitwise equal values on it,
+/// whatever their numbering and orientation.
 ///
 /// \code
 ///     auto const evaluator = RefinementEvaluator::Create(refiner);
@@ -40,24 +39,22 @@ namespace OsdExt {
 /// and nothing else is read, not even beside them.  They fail, too, if the refiner refined or unrefined in
 /// the meantime.
 ///
-/// **Limits.** A control value that is not a number is in no more of what comes out than with a limit
-/// stencil table, but in lattices, where all vertices in a face of level 0 have it.
+/// **Limits.** A frame of EvaluateLimit() takes longer than one of Evaluate():
 ///
-/// Where level 0 is a regular lattice of triangles, quads or hexagons, all vertices come from it:
-/// there a frame takes two to four times as long as Evaluate().  Elsewhere most come from hexagons of
-/// the levels before, six at a time: four to seven times as long on deep levels, of which the last
-/// one is needed for the other vertices alone.  These are those of level 0 and near irregular
-/// vertices, irregular faces and features, and all of the first two or three levels of meshes without
-/// hexagons: eight to ten times as long.
+/// | vertices                                                                    | times            |
+/// |-----------------------------------------------------------------------------|------------------|
+/// | in a regular lattice of triangles, quads or hexagons of level 0             | 2 to 4           |
+/// | in regular hexagons of deep levels, six at a time                           | 4 to 7           |
+/// | others: near irregular vertices, irregular faces and features, and all of   | 8 to 10          |
+/// | the first two or three levels of meshes without hexagons                    |                  |
 ///
-/// The first frame of a level takes as long as eight to forty, and keeps about 21 bytes for each vertex
-/// and 100 for each of the others.
+/// The first frame of a level takes as long as 8 to 40 later ones, and keeps about 21 bytes for each vertex, and 100 for
+/// each of the others.  A control value that is not a number reaches no more vertices than with a limit stencil table,
+/// except in lattices, where it reaches all vertices in a face of level 0.
 ///
-/// **Threads.** The work runs on the threads of FarExt::GetExecutor(), as many as
-/// FarExt::GetNumThreads() says.  Results are the same, bit for bit, for any number of threads, stride
-/// and offset, one level or all.  An evaluator keeps the levels below the one that was asked for, in
-/// memory that only the first frame takes: it must not be used by two threads at once.  Several
-/// evaluators may share a refiner.
+/// **Threads.** The work runs on the threads of FarExt::GetExecutor(), as many as FarExt::GetNumThreads() says.  Results have
+/// the same bits for any number of threads, stride and offset, for one level or all.  Two threads must not use one evaluator
+/// at once, because it keeps the levels in between.  Several evaluators may share a refiner.
 ///
 /// **Memory.** std::bad_alloc passes through, with nothing written.
 ///
@@ -66,9 +63,9 @@ namespace OsdExt {
 class OPENSUBDIVHEX_API RefinementEvaluator
     : public BufferEvaluator<RefinementEvaluator, CpuBinding> {
 public:
-    /// \brief What is evaluated, spelled as in FarExt::StencilTableFactory.
+    /// \brief The kind of data, spelled as in FarExt::StencilTableFactory.
     struct Options {
-        /// What the elements are.
+        /// The kind of data.
         FarExt::StencilMode interpolationMode = FarExt::INTERPOLATE_VERTEX;
         int fvarChannel = 0; ///< for INTERPOLATE_FACE_VARYING, whose elements are the values
     };
@@ -83,7 +80,7 @@ public:
     static std::unique_ptr<RefinementEvaluator> Create(FarExt::TopologyRefiner const &refiner,
                                                        Options options,
                                                        FarExt::CallStatus *status = nullptr);
-    /// The same with the default options.
+    /// Overload with default options.
     static std::unique_ptr<RefinementEvaluator> Create(FarExt::TopologyRefiner const &refiner,
                                                        FarExt::CallStatus *status = nullptr) {
         return Create(refiner, Options(), status);
