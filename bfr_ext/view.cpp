@@ -89,7 +89,7 @@ public:
         if (!(leastDepth > 0)) {
             return _pixelsAtDepth1 * byDistance;
         }
-        // What each axis adds to the depth and to the square of the distance, at either end.
+        // Contributions of each axis to the depth and to the square of the distance, at either end.
         Vector3 depths[2];
         Vector3 squares[2];
         for (std::size_t k = 0; k < 3; ++k) {
@@ -131,7 +131,7 @@ private:
 
 namespace {
 
-/// That of a cell's points.
+/// The box of a cell's points.
 Box getBox(CellValues const &values) {
     Box box;
     for (int i = 0; i < values.GetNumPoints(); ++i) {
@@ -339,7 +339,7 @@ private:
     std::vector<double> _corners; // of the surface, of the cell that is looked at
     Flatness _flatness;
 
-    // What they have taken of memory is kept for the next face.
+    // Their memory is kept for the next face.
     static RefinedCells &getCellsOfThread() {
         static thread_local RefinedCells cells;
         return cells;

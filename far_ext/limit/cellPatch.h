@@ -68,7 +68,7 @@ OPENSUBDIVHEX_API void FindBaseCellTurns(Level const &level, Far::Index face, in
 OPENSUBDIVHEX_API std::vector<CellPatch> GatherBorder(CellPatch const &baseCell, int const *turns,
                                                       Sdc::Options sdcOptions);
 
-/// \brief What one step makes of a cell: the cells that it becomes, and the vertices that their patches
+/// \brief The children of a cell in one step: cells, and the vertices that their patches
 /// have, each once, in terms of those of the cell's patch.
 struct CellRefinement {
     std::vector<CellPatch> children;

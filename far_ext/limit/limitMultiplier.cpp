@@ -110,7 +110,7 @@ void LimitMultiplier<REAL>::numberColumns(Index const *columns, int numColumns) 
     _columnOfIndex.ForEach(columns, numColumns, [](Entry &entry, int i) { entry.column = i; });
 }
 
-// Those of all sources; one that is among the last ones is not added again.
+// The lists of all sources; one that is among the last ones is not added again.
 template <typename REAL>
 void LimitMultiplier<REAL>::findLists() {
     constexpr int kNumCompared = 16;

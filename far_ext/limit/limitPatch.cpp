@@ -663,7 +663,7 @@ public:
         : _step(step), _sums(std::size_t(step.numParentVerts)),
           _hasSum(std::size_t(step.numParentVerts)) {}
 
-    // What a column has several times is summed up in the order in which it was added.
+    // Repeated entries of a column are summed in the order in which they were added.
     void Append(SparseRow const &row) {
         auto const first = std::ptrdiff_t(_step.verts.size());
         for (auto const &[column, weight] : row.entries) {

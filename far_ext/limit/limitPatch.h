@@ -9,7 +9,7 @@
 
 namespace OpenSubdivHex::FarExt::internal {
 
-/// \brief What the limit at a vertex depends on: the faces around it and around its neighbours.
+/// \brief The neighbourhood that determines the limit at a vertex: the faces around it and around its neighbours.
 /// (Not so on free boundaries, where a neighbour stays a neighbour and has another beyond.)
 ///
 /// The patch of a vertex makes the patch of its V-vertex: the faces there are the E-faces of its
@@ -66,13 +66,13 @@ class LimitPatchGatherer {
 public:
     using Index = Far::Index;
 
-    /// Of a level that is refined with \p faceMask.
+    /// Gathers in a level that is refined with \p faceMask.
     LimitPatchGatherer(Level const &level, Sdc::Options sdcOptions, FaceMask faceMask)
         : _level(level), _creasing(sdcOptions), _faceMask(faceMask) {}
 
-    /// That of a vertex, with all of its fans.
+    /// The patch of a vertex, with all of its fans.
     void Gather(Index vert, LimitPatch &patch);
-    /// That of a vertex which comes apart, with the fan of one of its corners.
+    /// The patch of a vertex that comes apart, with the fan of one of its corners.
     void GatherFan(Index corner, LimitPatch &patch);
 
     /// \brief Gathers what the surface of a cell depends on: the faces around its corners and around

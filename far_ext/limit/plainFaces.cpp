@@ -145,7 +145,7 @@ void PlainFaces::listOutputs(Index face, std::vector<Index> &outputs) const {
 }
 
 void PlainFaces::setOutputs() {
-    // What comes twice in one face of a type does so in all.
+    // A vertex that occurs twice in one face of a type does so in all.
     std::vector<std::vector<std::size_t>> places(_types.size());
     _samples.resize(_types.size());
     std::vector<Index> listed;

@@ -221,7 +221,7 @@ RegularFaces::RegularFaces(MeshLevels const &mesh, int level, std::vector<unsign
     listOthers();
 }
 
-// Those of a level that make anything, unless there is no sample of them.
+// Sets the faces of a level that give any limit, unless there is no sample of them.
 void RegularFaces::setFaces(int level, std::vector<RegularFace> faces, Index firstVertex,
                             Set &set) const {
     set.firstVertex = firstVertex;

@@ -29,7 +29,7 @@ namespace {
 // The masks that patches have in common, each once.
 class MaskCache {
 public:
-    // What a mask was made from.
+    // Key of a mask.
     class Key {
     public:
         Key &operator<<(double number) {
@@ -241,7 +241,7 @@ private:
     std::optional<CellFrames> _frames;
 
     std::vector<Index> _verts;
-    // What constants depend on, by vertex.
+    // Arguments of constants, by vertex.
     struct VertexCode {
         std::uint8_t code;
         bool isBesideOther;

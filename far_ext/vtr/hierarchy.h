@@ -38,7 +38,7 @@ struct Hierarchy {
     int numLevels = 1;
     int surfaceLevel = 0; ///< HexSchemeOptions::GetSurfaceLevel()
 
-    /// That of the vertices, or the value mesh of a \p channel of 0 or more.
+    /// The mesh of the vertices, or the value mesh of a \p channel of 0 or more.
     MeshLevels const &GetMesh(int channel) const {
         return channel < 0 ? mesh : channels[std::size_t(channel)].values;
     }

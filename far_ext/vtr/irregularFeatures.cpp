@@ -176,7 +176,7 @@ void IrregularFinder::findVertices() {
     }
 }
 
-// What was made of vertices stands in E-faces where their sides start.
+// Marks of vertices stand in E-faces where their sides start.
 void IrregularFinder::markFacesOfVertices() {
     for (IrregularVertex const &irregular : _level.irregularVerts) {
         Index const end = _level.vertFirstFace[irregular.vert + 1];

@@ -85,7 +85,7 @@ struct IrregularVertex {
 /// \brief A corner of a hexagon whose F-vertex has a mask of its own, since an irregular vertex or a
 /// quad is beside it.
 struct IrregularCorner {
-    /// What is irregular, seen from the corner.
+    /// The irregular parts, seen from the corner.
     enum Kind : std::uint16_t { // without padding in the corner, whose bytes are compared
         kAtVertex,              ///< its vertex
         kBehindVertex,          ///< the vertex before it in the face
@@ -398,7 +398,7 @@ struct Level {
     /// Of patches alone; vertices ascend, and edges are in the order around them.
     std::vector<SharpEnd> sharpEnds;
 
-    // What has masks of its own with FaceMask::Smooth; empty with others.
+    // Components with masks of their own with FaceMask::Smooth; empty with other masks.
     std::vector<IrregularVertex> irregularVerts;   ///< ascending
     std::vector<IrregularCorner> irregularCorners; ///< ascending; one for a corner at most
 

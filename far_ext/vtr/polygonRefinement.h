@@ -100,7 +100,7 @@ private:
     TagOptions const _tagOptions;
     LevelSizes _sizes{};
 
-    // What the ranges of components before a range make, by range.
+    // By range, the counts that the components before the range make.
     std::vector<ChildCounts> _vertexCounts; ///< V-vertices, V-faces and digons
     std::vector<ChildCounts> _edgeCounts;   ///< edges of _endEdges, E-faces
     std::vector<ChildCounts> _spokeCounts;  ///< spokes, by range of faces

@@ -267,7 +267,7 @@ public:
         : _level(level), _faceMask(options.faceMask), _creasing(options.sdcOptions),
           _hasOneFaceMasks(_faceMask == FaceMask::Smooth && level.numHexagonalSteps > 0) {}
 
-    // That of a vertex that may need a rule of its own.
+    // The features of a vertex that may need a rule of its own.
     SharpVertex Find(Index vert);
     // Adds the corners of wide sectors, and of those of one face, at the vertex that was found last.
     void AddSectorCorners(Index vert, std::vector<SectorCorner> &result);
@@ -279,7 +279,7 @@ private:
     FaceMask const _faceMask;
     Crease const _creasing;
     bool const _hasOneFaceMasks;
-    // What is found at a vertex, in memory that stays.
+    // Results at a vertex, in memory that is used again.
     FanItems _fan;
     SharpEdges _edges;
     std::vector<float> _childSharpness;
@@ -487,7 +487,7 @@ Index findSpoke(Refinement const &refinement, Index pVert, Index fVertex, Level 
     return Far::INDEX_INVALID;
 }
 
-// That to the F-vertex of a corner.
+// The spoke to the F-vertex of a corner.
 Index findSpoke(Refinement const &refinement, Index corner, Level const &child) {
     return findSpoke(refinement, refinement.parent->faceVerts[corner],
                      refinement.GetCornerChildVertex(corner), child);

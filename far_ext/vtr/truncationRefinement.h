@@ -56,7 +56,7 @@ private:
     EndCuts const _cuts;
     TagOptions const _tagOptions;
     LevelSizes _sizes{};
-    // What the ranges of components before a range make, by range.
+    // By range, the counts that the components before the range make.
     std::vector<ChildCounts> _vertexCounts; ///< V-vertices and V-faces
     std::vector<ChildCounts> _edgeCounts;   ///< spokes
 };

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// What kernels are told besides their arrays: PARAMETER(type, name), or PARAMETER_ARRAY(type, name,
+// Parameters of kernels besides their arrays: PARAMETER(type, name), or PARAMETER_ARRAY(type, name,
 // size).  See kernels.inl.
 
 PARAMETER(uint, count) // of invocations

@@ -12,7 +12,7 @@
 
 namespace OpenSubdivHex::OsdExt::internal {
 
-/// \brief What all plain faces of one size share:
+/// \brief The mask of all plain faces of one size:
 /// P_i = self V_i + neighbor (V_i-1 + V_i+1) + opposite V_i+3 + all (sum of V).
 ///
 /// So are all masks of 3 to 6 sides, the opposite vertex being there with 6 alone, and Average of
@@ -79,7 +79,7 @@ struct Groups {
     std::vector<ITEM> items;
     std::vector<std::size_t> firsts = {0}; ///< by group, and the number of items
 
-    /// What has been added since the last call is a group.
+    /// Makes a group of the items added since the last call.
     void EndGroup() { firsts.push_back(items.size()); }
 
     int GetNumGroups() const { return int(firsts.size()) - 1; }
