@@ -149,7 +149,7 @@ public:
     std::int64_t GetNumRows() const {
         return std::int64_t(_numSides) + (_faceMasks ? _level.numFaces : 0);
     }
-    // Of vertices.
+    // Rows of vertices.
     Index GetNumVertexRows() const { return _vertexRows ? _level.numVertices : 0; }
 
     // Memory that a row refers to.
@@ -228,7 +228,7 @@ public:
 
     Index GetNum() const { return _numGroups; }
     RowGroup const &Get(Index group) const { return _groups[std::size_t(group)]; }
-    // Of a group without a face.
+    // The rows of a group without a face.
     Far::ConstIndexArray GetRows(Index group) const {
         Index const first = Get(group).first;
         return {_rows.data() + first, Get(group + 1).first - first};

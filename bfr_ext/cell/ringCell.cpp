@@ -110,7 +110,7 @@ std::vector<REAL> const &RingCell::GetVertexWeights() const {
 }
 
 RingKey::RingKey() {
-    // Of a triangle with six faces at each vertex.
+    // For a triangle with six faces at each vertex.
     constexpr std::size_t kUsualSize = 128;
     _numbers.reserve(kUsualSize);
     _firstOccurrences.resize(kUsualSize, kNone);

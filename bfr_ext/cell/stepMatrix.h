@@ -33,7 +33,7 @@ void PrefetchArray(std::vector<T> const &array) {
 /// All lies in one block: what a face needs is read from end to end, and is mostly not in the cache.
 class StepMatrix {
 public:
-    /// Of no points.
+    /// A matrix of no points.
     StepMatrix() = default;
     explicit StepMatrix(FarExt::internal::PatchRefinement const &step);
 

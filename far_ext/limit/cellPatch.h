@@ -39,7 +39,7 @@ struct CellPatch {
     LimitPatch patch;
 
     int GetNumCorners() const { return int(locals.size()); }
-    /// Of a half cell, which half of a hexagon it is, as in kHexagonHalves.
+    /// For a half cell, which half of a hexagon it is, as in kHexagonHalves.
     int GetHalf() const { return locals[0] == kHexagonHalves[1][0] ? 1 : 0; }
 };
 

@@ -208,7 +208,7 @@ void LimitMultiplier<REAL>::findDifferences(Columns const &columns) {
     }
 }
 
-// Of the vertices themselves: a term has one column.
+// For the vertices themselves: a term has one column.
 template <typename REAL>
 void LimitMultiplier<REAL>::scatterTerms(Term const *begin, Term const *end, int numColumns) {
     std::fill(_sums.begin(), _sums.end(), REAL(0));

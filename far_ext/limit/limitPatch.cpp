@@ -262,7 +262,7 @@ void LimitPatchGatherer::addFace(Index face, int local, bool isRing, LimitPatch 
         _corners.push_back(corner);
         Index const vert = addVertex(corner, patch);
         patch.faceVerts.push_back(vert);
-        // Of the faces further out, only the corners at the neighbours of vertex 0 matter.
+        // Only corners at the neighbours of vertex 0 matter of the faces further out.
         if (isRing || vert < _numComplete) {
             for (SectorCorner sector : _level.GetSectorCorners(corner, corner + 1)) {
                 sector.corner = patchFirst + i;

@@ -123,7 +123,7 @@ private:
     int _numComplete = 0;
     std::vector<Index> _corners; // the level's corner of each corner of the patch
     std::vector<Index> _lines;   // the level's line of each line of the patch
-    // Of the vertices that the patch is for: positions in vertFaces, and edges.
+    // Positions in vertFaces, and edges, of the vertices that the patch is for.
     std::vector<Index> _ringFaces;
     std::vector<Index> _ringEdges;
     FanItems _fan = {{}, false};
@@ -155,7 +155,7 @@ PatchRefinement MakePatchStep(Refinement const &refinement, HexSchemeOptions con
 PatchRefinement RefinePatch(LimitPatch const &pPatch, Sdc::Options sdcOptions,
                             HexSchemeOptions const &schemeOptions, LimitPatch &cPatch);
 
-/// \brief What lies at a vertex between two infinitely sharp edges, or all around it: the limit
+/// \brief The faces at a vertex between two infinitely sharp edges, or all around it: the limit
 /// surface has a tangent plane for each.  A fan of faces with fewer than two such edges is one
 /// side.
 struct VertexSide {

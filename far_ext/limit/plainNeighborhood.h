@@ -52,7 +52,7 @@ public:
     ///          result is of no use
     bool Gather(Index vert, PlainNeighborhood &result);
 
-    /// \brief The same of a face: the faces around its vertices and around their neighbours.  Its vertices
+    /// \brief The neighbourhood of a face: the faces around its vertices and around their neighbours.  Its vertices
     /// are the first sources, in their order.
     ///
     /// The key tells, too, of which of its vertices the face is the first one.

@@ -105,7 +105,7 @@ private:
     // An edge or a diagonal.
     struct CurvePoints {
         Index points[2] = {Far::INDEX_INVALID, Far::INDEX_INVALID}; // beside its two vertices
-        // Of the patch on each side, in the order of the side.
+        // Points of the patch on each side, in the order of the side.
         Index inner[2] = {Far::INDEX_INVALID, Far::INDEX_INVALID};
         // Of the sides of faces with kites: the five points of the halves, and whose order they have.
         Index halves = Far::INDEX_INVALID;
@@ -113,7 +113,7 @@ private:
         Index rowOfM = Far::INDEX_INVALID; // of side 0, or of both if it is not sharp
         Index secondRowOfM = Far::INDEX_INVALID;
     };
-    // What the middle of a curve, or the centre of a face, is a limit of.
+    // Sources of the middle of a curve, or of the centre of a face.
     struct CenterRow {
         enum Kind { kEdge, kEdgeSide, kDiagonal, kDiagonalSide, kCenter } kind;
         Index index;

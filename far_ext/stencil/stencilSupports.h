@@ -91,10 +91,10 @@ class RowSupports {
 public:
     using Index = Far::Index;
 
-    /// Of rows that are their own sources, or sources[row].
+    /// Supports of rows that are their own sources, or sources[row].
     static RowSupports MakeSources(std::vector<Index> const &sources);
 
-    /// \brief Of rows whose sources have the stencils \p parents, which it refers to.
+    /// \brief Supports of rows whose sources have the stencils \p parents, which it refers to.
     ///
     /// \param before         the rows that made the parent level, null when its vertices are sources
     /// \param keepsVertices  whether stencils of the next level are to be made of these

@@ -24,7 +24,7 @@ struct FVarChannel {
     MeshLevels values;
     std::deque<FVarLevel> levels;
 
-    // Of level 0, whose value mesh may have more vertices than there are values: see FVarLevel.
+    // For level 0, whose value mesh may have more vertices than there are values: see FVarLevel.
     Far::Index numValues = 0;            ///< of the user
     Buffer<Far::Index> valuesOfVertices; ///< by vertex of the value mesh
     Buffer<Far::Index> faceValues;       ///< by corner of the mesh

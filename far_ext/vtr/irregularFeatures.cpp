@@ -99,7 +99,7 @@ public:
     }
 
 private:
-    // Of a vertex: the share of its masks, negative of those that are not irregular.
+    // By vertex: the share of its masks, negative if the vertex is not irregular.
     struct Vertex {
         float weight;
         FacesAround facesAround;

@@ -195,7 +195,7 @@ struct Level {
         return face < 0 ? face : faceFirstCorner[face] + edgeFaceLocals[e][side];
     }
 
-    /// Of the edge that begins at a corner, and is no boundary, the other side: where that begins.
+    /// The corner at which the other side begins, of an interior edge that begins at a corner.
     FaceCorner GetCornerAcross(Index corner) const {
         Index const edge = faceEdges[corner];
         int const side = GetSideCorner(edge, 0) == corner ? 1 : 0;
@@ -345,7 +345,7 @@ struct Level {
     Index numSharpBoundariesA = 0;
     Index numSharpBoundariesB = 0;
 
-    // What the numbering tells of how a refined level was made.
+    // Origin of a refined level, as the numbering has it.
     bool isHexagonal = false;  ///< by a hexagonal refinement, whose E-faces' sides are known
     int numHexagonalSteps = 0; ///< that made it, behind the last step of another scheme
     Index numVVertices = 0;    ///< the first vertices, made of vertices; F-vertices follow
@@ -360,7 +360,7 @@ struct Level {
     bool hasFullTopology = false;
 
     Buffer<std::byte> memory; ///< of the relations that a hexagonal refinement makes
-    /// Of those that are derived from faces: of corners and vertices, and of edges.
+    /// Relations that are derived from faces: of corners and vertices, and of edges.
     Buffer<std::byte> cornerMemory;
     Buffer<std::byte> edgeMemory;
 
@@ -395,7 +395,7 @@ struct Level {
 
     std::vector<SharpVertex> sharpVerts;     ///< ascending; all with a rule but RULE_SMOOTH
     std::vector<SectorCorner> sectorCorners; ///< ascending; of a corner by kind
-    /// Of patches alone; vertices ascend, and edges are in the order around them.
+    /// Only in patches; vertices ascend, and edges are in the order around them.
     std::vector<SharpEnd> sharpEnds;
 
     // Components with masks of their own with FaceMask::Smooth; empty with other masks.

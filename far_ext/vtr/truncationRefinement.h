@@ -21,7 +21,7 @@ using EndCuts = std::vector<unsigned char>;
 /// is one with two faces, whose polygon would have two vertices.
 EndCuts FindEndCuts(Hierarchy const &base, Far::ConstIndexArray labels);
 
-/// The same cuts for the value mesh of a channel of \p mesh, both of level 0.
+/// Cuts for the value mesh of a channel of \p mesh, both of level 0.
 EndCuts GetEndCutsOfChannel(Level const &mesh, EndCuts const &cuts, FVarLevel const &channel);
 
 /// \brief Makes the refinement of FirstStep::Truncate.

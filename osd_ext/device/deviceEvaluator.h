@@ -44,7 +44,7 @@ public:
                                      int level);
     /// @}
 
-    /// Of a level whose faces are all drawn whole.
+    /// For a level whose faces are all drawn whole.
     std::int64_t GetNumTriangles(int level) const { return _numTriangles[std::size_t(level)]; }
     /// \brief Writes the triangles of a level, three vertices each, as CreateTriangleIndices orders
     /// them.

@@ -31,7 +31,7 @@ PARAMETER(uint, vertexOffset) // added to the vertices of triangles
 PARAMETER(uint, faceSize)     // of its faces
 PARAMETER(uint, firstVertex)  // of a run of vertices
 PARAMETER(float, vertexWeight)
-// Of plain faces.
+// For plain faces.
 PARAMETER(float, weightOfAll)
 PARAMETER(float, weightOfSelf)
 PARAMETER(float, weightOfNeighbors)

@@ -131,7 +131,7 @@ struct VertexLimitTask : LimitTask {
 struct LatticeTask : LimitTask {
     static constexpr int kNumDerivatives = 4; ///< weights of derivatives in terms of others
 
-    /// Of outputs.
+    /// Number of orbits of outputs.
     int GetNumOrbits() const { return 2 * numPairs + numHalves + numAxes; }
 
     int faceSize;

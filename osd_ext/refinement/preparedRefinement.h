@@ -24,7 +24,7 @@ struct PlainFaceMask {
     float neighbor = 0;
     float opposite = 0;
     float all = 0;
-    /// Of other faces: the weights of corner 0 twice in a row, so that every rotation of them is
+    /// For other faces: the weights of corner 0 twice in a row, so that every rotation of them is
     /// contiguous.  Else empty.
     std::vector<float> weights;
 };
@@ -104,10 +104,10 @@ struct IndexRun {
 struct PreparedRefinement {
     std::shared_ptr<FarExt::internal::RefinementRules const> rules; ///< null for a truncation
     PlainMasks masks;
-    /// Of the parent, plain faces and hexagons with dense rules, in runs of one size.
+    /// Plain faces of the parent, and hexagons with dense rules, in runs of one size.
     Groups<IndexRun> faceRuns;
     Groups<WeightedFace> weightedFaces;
-    /// Of a truncation, all vertices that it makes.
+    /// For a truncation, all vertices that it makes.
     Groups<ListedVertex> listedVertices;
     Groups<IndexRun> vertexRuns; ///< plain vertices of the parent
     Groups<WeightedVertex> weightedVertices;
