@@ -6,8 +6,12 @@
 
 namespace OpenSubdivHex::OsdExt {
 
-/// \brief The functions of CpuEvaluator, OmpEvaluator and TbbEvaluator that evaluate patches, with the
+/// \brief Functions of CpuEvaluator, OmpEvaluator and TbbEvaluator that evaluate patches, with the
 /// signatures of Osd::CpuEvaluator.
+///
+/// \code
+///     OsdExt::CpuEvaluator::EvalPatches(points, desc, dst, desc, numCoords, coords, cpuPatchTable);
+/// \endcode
 ///
 /// **Tables.** Osd::CpuPatchTable of any Far::PatchTable, of this library or of OpenSubdiv, or a class with
 /// its functions.  Patches of the types REGULAR, GREGORY_BASIS and QUADS, which those of Catmull-Clark and
