@@ -227,13 +227,19 @@ internal::CellType const *SurfaceFactory::findType(int channel, Index levelFace,
     return &type;
 }
 
-// Makes what the surface of a face is made of, of bytes; null, and a status, where it has none.
-internal::BaseFace const *SurfaceFactory::makeFace(Index face, Interpolation interpolation,
-                                                   int channel, std::vector<std::byte> &bytes,
-                                                   CallStatus &status) const {
-    status = checkIsFace(face);
+// What a thread makes faces with: what it has taken of memory is kept for the next one.
+struct SurfaceFactory::FaceMaker {
+    internal::PlainFaceGatherer gatherer;
+    std::vector<Index> points; // of a face that is not plain
+    std::vector<std::byte> bytes;
+};
+
+// Makes what the surface of a face is made of, of the bytes.
+CallStatus SurfaceFactory::makeFace(Index face, Interpolation interpolation, int channel,
+                                    FaceMaker &maker, internal::BaseFace const *&made) const {
+    CallStatus status = checkIsFace(face);
     if (!status.IsOk()) {
-        return nullptr;
+        return status;
     }
     FarExt::internal::Hierarchy const &hierarchy = _refiner.GetHierarchy();
     FVarChannel const *const values =
@@ -241,61 +247,67 @@ internal::BaseFace const *SurfaceFactory::makeFace(Index face, Interpolation int
     auto const depth = std::size_t(_level.GetDepth());
     Index const levelFace = values ? values->levels[depth].valueFaces[face] : face;
     int const size = _level.GetLevel().GetFaceSize(face);
-    internal::FacePoints<internal::BaseType> points(bytes);
+    internal::FacePoints<internal::BaseType> points(maker.bytes);
     internal::BaseType type;
-    // What it has taken of memory is kept for the next face.
-    static thread_local internal::PlainFaceGatherer gatherer;
-    std::vector<Index> pointsOfPatch;
     if (internal::PlainFaceType const *const plain =
-            gatherer.Find(*_plainTypes[std::size_t(interpolation)], *_walks.begin()[channel + 1],
-                          levelFace, points)) {
+            maker.gatherer.Find(*_plainTypes[std::size_t(interpolation)],
+                                *_walks.begin()[channel + 1], levelFace, points)) {
         type = internal::BaseType(*plain);
     } else if (internal::CellType const *const cellType =
-                   findType(channel, levelFace, face, interpolation, pointsOfPatch, status)) {
+                   findType(channel, levelFace, face, interpolation, maker.points, status)) {
         type = internal::BaseType(*cellType);
-        points.resize(pointsOfPatch.size());
-        std::copy(pointsOfPatch.begin(), pointsOfPatch.end(), points.data());
+        points.resize(maker.points.size());
+        std::copy(maker.points.begin(), maker.points.end(), points.data());
     } else {
-        return nullptr;
+        return status;
     }
     // Vertices of the value mesh of a later level are its values.
     if (values && depth == 0) {
         std::for_each_n(points.data(), int(points.size()) - 2 * size,
                         [&](Index &point) { point = values->valuesOfVertices[point]; });
     }
-    return &points.Make(type, size);
+    made = &points.Make(type, size);
+    return status;
 }
 
 template <typename REAL>
 CallStatus SurfaceFactory::TryInit(Index face, Interpolation interpolation, int channel,
                                    Surface<REAL> &surface, bool isKept) const {
-    CallStatus status;
     auto const kind = std::size_t(channel < 0 ? int(interpolation) : kNumInterpolations + channel);
-    internal::BaseFace const *kept =
+    internal::BaseFace const *const kept =
         isKept && !hasRefinedAgain() ? _kept->Find(kind, face) : nullptr;
-    if (!kept) {
-        // Where memory runs out, the surface stays as it was.
-        static thread_local std::vector<std::byte> bytes;
-        internal::BaseFace const *const own = makeFace(face, interpolation, channel, bytes, status);
-        if (!own) {
-            surface.Clear();
-            return status;
-        }
-        kept = isKept ? _kept->Add(kind, face, *own) : nullptr;
-        if (!kept) {
-            surface._ownFace.swap(bytes);
-        }
+    if (kept) {
+        set(*kept, true, surface);
+        return CallStatus();
     }
+    // Where memory runs out, the surface stays as it was.
+    static thread_local FaceMaker maker;
+    internal::BaseFace const *own = nullptr;
+    CallStatus status = makeFace(face, interpolation, channel, maker, own);
+    if (!own) {
+        surface.Clear();
+    } else if (internal::BaseFace const *const added =
+                   isKept ? _kept->Add(kind, face, *own) : nullptr) {
+        set(*added, true, surface);
+    } else {
+        surface._ownFace.swap(maker.bytes);
+        set(*own, false, surface);
+    }
+    return status;
+}
+
+// Makes the surface that of a face, which is kept or is its own.
+template <typename REAL>
+void SurfaceFactory::set(internal::BaseFace const &face, bool isKept,
+                         Surface<REAL> &surface) const {
     if (surface._owner != _owner) {
         surface._owner = _owner;
     }
-    surface._keptFace = kept;
-    internal::BaseFace const &made = surface.GetFace();
-    surface._patchLevel = getPatchLevel(made.type);
-    if (surface._parameterization.GetFaceSize() != made.size) { // mostly that of the face before
-        surface._parameterization = Parameterization(made.size);
+    surface._keptFace = isKept ? &face : nullptr;
+    surface._patchLevel = getPatchLevel(face.type);
+    if (surface._parameterization.GetFaceSize() != face.size) { // mostly that of the face before
+        surface._parameterization = Parameterization(face.size);
     }
-    return status;
 }
 
 template <typename REAL>

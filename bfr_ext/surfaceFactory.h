@@ -243,6 +243,8 @@ public:
                                Surface<REAL> &surface, bool isKept = true) const;
 
 private:
+    struct FaceMaker;
+
     SurfaceFactory(FarExt::TopologyRefiner const &refiner, Options options);
     SurfaceFactory(SurfaceFactory const &other, Options options);
 
@@ -255,9 +257,12 @@ private:
                                        FarExt::Interpolation interpolation,
                                        std::vector<Index> &points,
                                        FarExt::CallStatus &status) const;
-    internal::KeptFace<internal::BaseType> const *
-    makeFace(Index face, FarExt::Interpolation interpolation, int channel,
-             std::vector<std::byte> &bytes, FarExt::CallStatus &status) const;
+    FarExt::CallStatus makeFace(Index face, FarExt::Interpolation interpolation, int channel,
+                                FaceMaker &maker,
+                                internal::KeptFace<internal::BaseType> const *&made) const;
+    template <typename REAL>
+    void set(internal::KeptFace<internal::BaseType> const &face, bool isKept,
+             Surface<REAL> &surface) const;
 
     FarExt::TopologyRefiner const &_refiner;
     FarExt::TopologyLevel const _level;
