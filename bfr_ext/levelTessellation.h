@@ -14,20 +14,23 @@ class FaceSections;
 class TessellationData;
 } // namespace internal
 
-/// \brief A base face cut into facets, as Bfr::Tessellation: places, at which a Surface is evaluated, and the facets
-/// between them.
+/// \brief A base face cut into facets by levels of refinement, as Bfr::Tessellation cuts it by rates: (u, v) at which a
+/// Surface is evaluated, and the facets between them.
 ///
-/// In place of Bfr's rates there are levels of refinement; a Surface takes a Bfr::Tessellation, with rates, too.
-/// The places are those of vertices, and the facets are cells: the F-face and the halves of hexagons that the
-/// refined levels have in the face.
-/// At level d an edge is a polyline of 1, 1, 3, 5, 11, 21, 43 ... segments (d = 0, 1, 2 ...), each of
-/// which has the points of the one before, too.
+/// \code
+///     BfrExt::LevelTessellation const tessellation(surface.GetParameterization(), 3); // level 3
+///     surface.Evaluate(tessellation, control, 3, points, 3);
+///     tessellation.GetFacets(facets); // triangles
+/// \endcode
 ///
-/// Cells are refined to the level of the inside, but for those whose refinement would give an edge of
-/// the face more points than its level has; or a CellTree says for each cell whether it is refined.
-/// Where a cell meets smaller ones, or an edge of a finer level, it has their points in its own sides.
-/// So neighbours fit whatever their levels and trees are, as long as both take the same level, or
-/// Polyline, for the edge that they share: there are no gaps, and no more facets than are asked for.
+/// The points are vertices of refined levels, the facets cells: the F-face and the halves of hexagons that these levels
+/// have in the face.  At level d = 0, 1, 2 ... an edge has 1, 1, 3, 5, 11, 21, 43 ... segments; each level has the points of
+/// the one before.
+///
+/// Cells are refined to the level of the inside, except those whose refinement would give an edge of the face more points
+/// than its level has; or a CellTree says which cells are refined.  A cell beside smaller ones, or beside an edge of a finer
+/// level, has their points in its own sides.  So neighbours that take the same level, or Polyline, for their edge fit
+/// without gaps, whatever their other levels and trees.
 ///
 /// A PatchStream cuts faces that are too large for its memory into *sections*, whose tessellations are
 /// parts of that of the face: with the same places and facets, but that hexagons which two sections have
@@ -54,7 +57,7 @@ public:
             _facetSize = size;
             return *this;
         }
-        /// That size.
+        /// The size that was set.
         int GetFacetSize() const { return _facetSize; }
         /// Sets how far it is from one facet to the next, in indices; 0: the size of facets.  Of no
         /// matter for polygons.
@@ -62,14 +65,14 @@ public:
             _facetStride = stride;
             return *this;
         }
-        /// That distance.
+        /// The distance that was set.
         int GetFacetStride() const { return _facetStride; }
         /// Sets how far it is from one pair of coordinates to the next; 0: 2.
         Options &SetCoordStride(int stride) {
             _coordStride = stride;
             return *this;
         }
-        /// That distance.
+        /// The distance that was set.
         int GetCoordStride() const { return _coordStride; }
 
     private:
@@ -78,7 +81,7 @@ public:
         int _coordStride;
     };
 
-    /// \brief The same level everywhere, 0 ... kLastLevel.
+    /// \brief One level everywhere, 0 ... kLastLevel.
     ///
     /// The tessellation is invalid for other levels, for an invalid parameterization, for a facet size
     /// that is none of the three, for strides that are less than what they are between, and for so many
@@ -136,8 +139,8 @@ public:
     int GetNumEdges() const;
 
     /// @name Coordinates
-    /// Those of the boundary come first, from vertex 0 on around the face, or the section: each vertex and
-    /// then the inner points of the edge behind it.
+    /// Points on the boundary come first, from vertex 0 on around the face, or the section: each vertex, then the inner
+    /// points of the edge behind it.
     /// @{
 
     /// All places.

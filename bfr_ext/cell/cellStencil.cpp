@@ -59,21 +59,22 @@ BasePoint findBasePoint(POLYGON const &polygon, int size, double u, double v, do
     // Of finite coordinates the products are finite.
     double const x = std::clamp(u - center[0], -kFar, kFar);
     double const y = std::clamp(v - center[1], -kFar, kFar);
-    auto const findIn = [&](int sector) {
-        BasePoint point = makeBasePoint(polygon, sector, {});
-        for (std::size_t i = 0; i < 2; ++i) {
-            point.coords[i] = point.toCoords[i][0] * x + point.toCoords[i][1] * y;
-        }
-        return point;
+    auto const findIn = [&](int sector, BasePoint &point) {
+        auto const &[a, b] = polygon.GetSectorMap(sector);
+        point.sector = sector;
+        point.coords = {a[0] * x + a[1] * y, b[0] * x + b[1] * y};
+        point.toCoords[0] = a;
+        point.toCoords[1] = b;
     };
     BasePoint best;
     if (size == 4) { // by far the most
         constexpr int kSectors[2][2] = {{0, 1}, {3, 2}};
-        best = findIn(kSectors[y > x ? 1 : 0][y > -x ? 1 : 0]);
+        findIn(kSectors[y > x ? 1 : 0][y > -x ? 1 : 0], best);
     } else {
-        best = findIn(0);
+        findIn(0, best);
         for (int sector = 1; sector < size; ++sector) {
-            BasePoint const point = findIn(sector);
+            BasePoint point;
+            findIn(sector, point);
             if (std::min(point.coords[0], point.coords[1]) >
                 std::min(best.coords[0], best.coords[1])) {
                 best = point;
@@ -86,7 +87,7 @@ BasePoint findBasePoint(POLYGON const &polygon, int size, double u, double v, do
     best.coords = clampToSector(best.coords);
     // Between two sectors it is the second, as in tessellations.
     if (best.coords[0] == 0) {
-        return makeBasePoint(polygon, (best.sector + 1) % size, {best.coords[1], 0});
+        best = makeBasePoint(polygon, (best.sector + 1) % size, {best.coords[1], 0});
     }
     return best;
 }
