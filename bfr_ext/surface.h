@@ -8,6 +8,7 @@
 #include <opensubdiv/far/types.h>
 
 #include <algorithm>
+#include <cstddef>
 #include <memory>
 #include <vector>
 
@@ -18,34 +19,9 @@ namespace Far = OpenSubdiv::Far;
 namespace BfrExt {
 
 namespace internal {
-class CellType;
-class PlainFaceType;
-template <typename REAL>
-class BorderEvaluator;
-template <typename REAL>
-class PatchEvaluator;
-struct BfrPlace;
-
-/// The type of a base face: that of a plain one, or one that was made at once.
-class BaseType {
-public:
-    BaseType() = default;
-    explicit BaseType(CellType const &type) : _type(&type) {}
-    explicit BaseType(PlainFaceType const &plain) : _plain(&plain) {}
-
-    explicit operator bool() const { return _type || _plain; }
-    CellType const &operator*() const;
-    CellType const *operator->() const { return &**this; }
-    bool IsInLattice() const;
-    /// Whether something sharp is near.
-    bool IsSharp() const;
-    /// The type of a plain face outside lattices, whose CellType need not be made; null for other faces.
-    PlainFaceType const *GetPlain() const;
-
-private:
-    CellType const *_type = nullptr;
-    PlainFaceType const *_plain = nullptr;
-};
+class BaseType;
+template <typename TYPE>
+struct KeptFace;
 } // namespace internal
 
 /// \brief The limit surface of a base face, as Bfr::Surface: a function of u and v.
@@ -124,9 +100,13 @@ public:
     Surface(Surface const &other);
     /// \copydoc Surface(Surface const &)
     Surface &operator=(Surface const &other);
+    /// Makes the other one invalid.
+    Surface(Surface &&other) noexcept;
+    /// \copydoc Surface(Surface &&)
+    Surface &operator=(Surface &&other) noexcept;
 
     /// Whether SurfaceFactory initialized it.
-    bool IsValid() const { return bool(_type); }
+    bool IsValid() const { return _owner != nullptr; }
     /// Makes it invalid.
     void Clear();
 
@@ -139,7 +119,7 @@ public:
     /// @{
 
     /// Control points of the face.
-    int GetNumControlPoints() const { return _numControlPoints; }
+    int GetNumControlPoints() const;
     /// Writes the indices of control points in the mesh: the vertices of the face first, in its order.  No vertex
     /// comes twice, even if the face has it twice.  A face-varying value may come several times: once for each fan of faces
     /// around its vertex, because each fan is refined apart.
@@ -149,11 +129,11 @@ public:
     template <typename REAL_MESH>
     void GatherControlPoints(REAL_MESH const meshPoints[], PointDescriptor const &meshPointDesc,
                              REAL controlPoints[], PointDescriptor const &controlPointDesc) const {
-        prefetch();
-        Index const *const points = getPoints();
-        for (int k = 0; k < _numControlPoints; ++k) {
+        Index const *const points = prefetchPoints();
+        Index const *const end = points + GetNumControlPoints();
+        for (Index const *point = points; point != end; ++point) {
             REAL_MESH const *const from =
-                meshPoints + std::ptrdiff_t(points[k]) * meshPointDesc.stride;
+                meshPoints + std::ptrdiff_t(*point) * meshPointDesc.stride;
             if (meshPointDesc.size == 3) { // by far the most
                 controlPoints[0] = REAL(from[0]);
                 controlPoints[1] = REAL(from[1]);
@@ -274,61 +254,25 @@ public:
                               PointDescriptor const &meshPointDesc, REAL result[]) const;
     /// @}
 
+    /// What it is made of, for the classes of this library; of a valid surface.
+    internal::KeptFace<internal::BaseType> const &GetFace() const;
+
 private:
     friend class SurfaceFactory;
-    friend class View;
-    template <typename>
-    friend class PatchStream;
 
-    void set(std::shared_ptr<void const> const &owner, internal::BaseType const &type, int size,
-             int patchLevel, int numControlPoints, Index const *keptPoints) {
-        if (_owner != owner) {
-            _owner = owner;
-        }
-        _type = type;
-        _patchLevel = patchLevel;
-        _numControlPoints = numControlPoints;
-        _keptPoints = keptPoints;
-        if (_parameterization.GetFaceSize() != size) { // mostly that of the face before
-            _parameterization = Parameterization(size);
-        }
-    }
-    // Has what evaluates it brought to the cache, while control points are gathered.
-    void prefetch() const;
-    bool canEvaluate(LevelTessellation const &tessellation) const;
-    internal::BfrPlace findPlace(REAL const uv[2]) const;
-    int evaluateStencil(REAL const uv[2], int numDerivatives, REAL *const weights[6]) const;
-    void turnDerivatives(LevelTessellation const &tessellation, std::size_t size,
-                         REAL *const derivatives[5], PointDescriptor const &resultDesc) const;
+    // The control points, while what evaluates them is brought to the cache.
+    Index const *prefetchPoints() const;
     void evaluate(REAL const uv[2], int numDerivatives, REAL const patchPoints[],
                   PointDescriptor const &pointDesc, REAL *const results[6]) const;
     void evaluate(LevelTessellation const &tessellation, REAL const controlPoints[],
-                  PointDescriptor const &pointDesc, REAL *const results[3],
+                  PointDescriptor const &pointDesc, REAL *const results[6],
                   PointDescriptor const &resultDesc) const;
-    void evaluateTree(LevelTessellation const &tessellation, REAL const controlPoints[],
-                      PointDescriptor const &pointDesc, REAL *const results[3],
-                      PointDescriptor const &resultDesc) const;
-    template <typename FUNCTION>
-    void useBorder(REAL const controlPoints[], PointDescriptor const &pointDesc,
-                   FUNCTION const &function) const;
-    void evaluateBorder(LevelTessellation const &tessellation,
-                        internal::BorderEvaluator<REAL> &evaluator, REAL p[],
-                        PointDescriptor const &resultDesc) const;
-    void evaluateSectionBorder(LevelTessellation const &tessellation,
-                               internal::BorderEvaluator<REAL> &evaluator, REAL p[],
-                               PointDescriptor const &resultDesc) const;
+    int evaluateStencil(REAL const uv[2], int numDerivatives, REAL *const weights[6]) const;
 
-    // The control points, and then the turns.
-    Index const *getPoints() const { return _keptPoints ? _keptPoints : _ownPoints.data(); }
-    // By edge and then by vertex, how the face has what it shares with its neighbours.
-    int const *getTurns() const { return getPoints() + _numControlPoints; }
-
-    std::shared_ptr<void const> _owner; // of the type, and of points that are kept
-    internal::BaseType _type;
-    int _numControlPoints = 0;
+    std::shared_ptr<void const> _owner; // of what the face refers to; null of an invalid surface
+    internal::KeptFace<internal::BaseType> const *_keptFace = nullptr; // the owner's; null: its own
+    std::vector<std::byte> _ownFace;
     int _patchLevel = 0;
-    Index const *_keptPoints = nullptr; // null: its own
-    std::vector<Index> _ownPoints;
     Parameterization _parameterization;
 };
 

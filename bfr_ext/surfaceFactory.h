@@ -16,12 +16,12 @@
 namespace OpenSubdivHex::BfrExt {
 
 namespace internal {
+class CellType;
 class CellTypes;
 class FaceWalk;
 template <typename TYPE>
 class KeptFaces;
 class PlainFaceTypes;
-class StreamTypes;
 } // namespace internal
 
 /// \brief Makes the surfaces of base faces, as Bfr::RefinerSurfaceFactory.
@@ -126,6 +126,10 @@ public:
                                                   FarExt::CallStatus *status = nullptr) {
         return Create(refiner, Options(), status);
     }
+    /// \brief One of the same mesh with other options, which need not look at the mesh again.
+    ///
+    /// Its refiner must live as long; this factory need not.
+    std::unique_ptr<SurfaceFactory> CreateWith(Options options) const;
     ~SurfaceFactory();
 
     SurfaceFactory(SurfaceFactory const &) = delete;
@@ -154,6 +158,8 @@ public:
     ///                a face with more than 1,024 vertices.  At a non-manifold vertex that is a corner for
     ///                ever, as a pole that faces name twice, the faces of each fan count by themselves, up to 4,096
     bool FaceHasLimitSurface(Index face, FarExt::CallStatus *status = nullptr) const;
+    /// The same but for vertices of many faces, whose limits take long to find.
+    FarExt::CallStatus CheckFace(Index face) const;
     /// The parameterization of a face, which is in range.
     Parameterization GetFaceParameterization(Index face) const;
 
@@ -228,35 +234,38 @@ public:
     }
     /// @}
 
-private:
+    /// \brief Makes any of these, without telling an error callback where the face has none.
+    ///
+    /// \param face           whose surface it is
+    /// \param interpolation  how the data are refined
+    /// \param channel        of face-varying data, in range; -1: data of vertices
+    /// \param surface        is invalid on failure
+    /// \param isKept         whether what the surface is made of may be kept for the next one of the face
     template <typename REAL>
-    friend class PatchStream;
-    friend class View;
-    friend class internal::StreamTypes;
+    FarExt::CallStatus TryInit(Index face, FarExt::Interpolation interpolation, int channel,
+                               Surface<REAL> &surface, bool isKept = true) const;
+
+private:
+    struct FaceMaker;
 
     SurfaceFactory(FarExt::TopologyRefiner const &refiner, Options options);
-    // One with other options, to which this mesh need not be looked at again.
     SurfaceFactory(SurfaceFactory const &other, Options options);
 
     void setTypes();
     int getPatchLevel(internal::BaseType const &type) const;
     bool hasRefinedAgain() const;
     FarExt::CallStatus checkIsFace(Index face) const;
-    FarExt::CallStatus checkFace(Index face) const;
     FarExt::CallStatus checkCrowd(Index face, int channel, Index levelFace) const;
     internal::CellType const *findType(int channel, Index levelFace, Index face,
                                        FarExt::Interpolation interpolation,
                                        std::vector<Index> &points,
                                        FarExt::CallStatus &status) const;
-    // With the causes of the public functions, which report them; a channel is in range, -1: none.
-    // Nothing is kept.
+    FarExt::CallStatus makeFace(Index face, FarExt::Interpolation interpolation, int channel,
+                                FaceMaker &maker,
+                                internal::KeptFace<internal::BaseType> const *&made) const;
     template <typename REAL>
-    FarExt::CallStatus init(Index face, FarExt::Interpolation interpolation, int channel,
-                            Surface<REAL> &surface) const;
-    // Overload with what is kept.
-    template <typename REAL>
-    FarExt::CallStatus initKept(Index face, FarExt::Interpolation interpolation, int channel,
-                                Surface<REAL> &surface) const;
+    void set(internal::KeptFace<internal::BaseType> const &face, bool isKept,
+             Surface<REAL> &surface) const;
 
     FarExt::TopologyRefiner const &_refiner;
     FarExt::TopologyLevel const _level;
@@ -266,8 +275,7 @@ private:
     std::vector<std::shared_ptr<internal::FaceWalk>> _walks; // of the mesh, and of each channel
     std::array<internal::PlainFaceTypes *, 2> _plainTypes{}; // by interpolation
     // The faces that are kept: of the mesh, by interpolation, and then of each channel.
-    using KeptFaces = internal::KeptFaces<internal::BaseType>;
-    KeptFaces *_kept = nullptr;
+    internal::KeptFaces<internal::BaseType> *_kept = nullptr;
     std::shared_ptr<void const> _owner; // of these and of the types, as surfaces have it
 };
 

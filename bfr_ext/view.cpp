@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "view.h"
 
+#include "cell/baseType.h"
 #include "cell/cellMeasures.h"
-#include "cell/cellType.h"
 
 #include "far_ext/vtr/hierarchy.h"
 #include "far_ext/vtr/parallel.h"
@@ -465,10 +465,10 @@ void View::setBase(Surface<REAL> const &surface, REAL const *controlPoints, std:
                    internal::RefinedCells &cells) {
     std::vector<double> const points =
         gather(controlPoints, stride, std::size_t(surface.GetNumControlPoints()));
-    if (internal::PlainFaceType const *const plain = surface._type.GetPlain()) {
+    if (internal::PlainFaceType const *const plain = surface.GetFace().type.GetPlain()) {
         cells.SetBase(*plain, points.data(), 3);
     } else {
-        cells.SetBase(*surface._type, points.data(), 3);
+        cells.SetBase(*surface.GetFace().type, points.data(), 3);
     }
 }
 
@@ -499,7 +499,7 @@ Polyline View::MakeEdge(Surface<REAL> const &surface, int edge, REAL const contr
         return Polyline();
     }
     internal::CellType::BorderItem const &item =
-        surface._type->GetBorderItem(surface.getTurns(), std::size_t(edge));
+        surface.GetFace().type->GetBorderItem(surface.GetFace().GetTurns(), std::size_t(edge));
     std::vector<double> points;
     for (int const point : item.points) {
         REAL const *const from = controlPoints + std::ptrdiff_t(point) * pointDesc.stride;
@@ -559,7 +559,7 @@ public:
         if (face != _face) {
             _face = face;
             _surface.Clear();
-            if (_factory.initKept(face, FarExt::Interpolation::Vertex, -1, _surface).IsOk()) {
+            if (_factory.TryInit(face, FarExt::Interpolation::Vertex, -1, _surface).IsOk()) {
                 _points.resize(3 * std::size_t(_surface.GetNumControlPoints()));
                 _surface.GatherControlPoints(_meshPoints, {3, int(_stride)}, _points.data(), 3);
             }

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "facePatches.h"
 
+#include "baseType.h"
 #include "lanes.h"
 #include "placeKernel.h"
 #include "refinedCells.h"
 
-#include "bfr_ext/surface.h"
 #include "far_ext/patch/cellPatchPoints.h"
 #include "far_ext/vtr/inline.h"
 

@@ -130,10 +130,19 @@ public:
     /// \brief Finds the type of a face among some, and adds it where there is none.
     ///
     /// \param walk    of the surface level of a mesh, or of the values of a channel; another one may follow
-    /// \param points  the control points, and behind these the turns of FindBaseCellTurns()
+    /// \param points  the control points, and behind these the turns of FindBaseCellTurns(): a vector, or what has
+    ///                resize() and data() as that
     /// \return        null where the face is not plain, or may not be; then the points are of no use
+    template <typename POINTS>
     PlainFaceType const *Find(PlainFaceTypes &types, FaceWalk const &walk, Index face,
-                              std::vector<Index> &points);
+                              POINTS &points) {
+        PlainFaceType const *const type = findType(types, walk, face);
+        if (!type) {
+            return nullptr;
+        }
+        points.resize(std::size_t(type->GetNumPoints()) + 2 * std::size_t(_faceSize));
+        return writeFace(walk.GetLevel(), face, *type, points.data()) ? type : nullptr;
+    }
 
 private:
     // A vertex all of whose faces are in the patch, these beginning at a place of their own.
@@ -149,6 +158,9 @@ private:
         int numFaces;
     };
 
+    PlainFaceType const *findType(PlainFaceTypes &types, FaceWalk const &walk, Index face);
+    bool writeFace(FarExt::internal::Level const &level, Index face, PlainFaceType const &type,
+                   Index *points);
     bool addVertex(FaceWalk const &walk, Index vert, Index place, int turn);
     bool findVertices(FaceWalk const &walk, Index face);
     bool findKey(FarExt::internal::Level const &level);
