@@ -255,18 +255,16 @@ TEST(LevelTessellation, IsInvalidForWrongArguments) {
     EXPECT_EQ(LevelTessellation(quad, -1).GetNumBoundaryCoords(), 0);
 }
 
-TEST(LevelTessellation, StaysValidWhereItIsMovedFrom) {
+TEST(LevelTessellation, CopiesStayWhenItIsAssigned) {
     for (bool const isTree : {false, true}) {
-        LevelTessellation from = isTree ? LevelTessellation(BfrExt::CellTree(4, 2))
-                                        : LevelTessellation(Parameterization(4), 2);
-        LevelTessellation const copy = from;
-        LevelTessellation const to = std::move(from);
-        // NOLINTNEXTLINE(bugprone-use-after-move, clang-analyzer-cplusplus.Move)
-        for (LevelTessellation const *const tessellation : {&copy, &to, &std::as_const(from)}) {
-            EXPECT_TRUE(tessellation->IsValid());
-            EXPECT_EQ(tessellation->GetNumFacets(), 42);
-            EXPECT_EQ(tessellation->GetNumCoords(), 28);
-        }
+        LevelTessellation tessellation = isTree ? LevelTessellation(BfrExt::CellTree(4, 2))
+                                                : LevelTessellation(Parameterization(4), 2);
+        LevelTessellation const copy = tessellation;
+        tessellation = LevelTessellation(Parameterization(3), 0);
+        EXPECT_EQ(tessellation.GetNumCoords(), 3);
+        EXPECT_TRUE(copy.IsValid());
+        EXPECT_EQ(copy.GetNumFacets(), 42);
+        EXPECT_EQ(copy.GetNumCoords(), 28);
     }
 }
 

@@ -13,7 +13,6 @@ namespace OpenSubdivHex::Tools {
 using BfrExt::LevelTessellation;
 using BfrExt::PatchStream;
 using BfrExt::Polyline;
-using BfrExt::SurfaceFactory;
 using FarExt::CallStatus;
 using FarExt::TopologyLevel;
 
