@@ -3,6 +3,8 @@
 
 #include "cell/faceSections.h"
 
+#include "far_ext/vtr/report.h"
+
 #include <algorithm>
 #include <array>
 #include <map>

@@ -7,6 +7,8 @@
 #include "cell/plainFace.h"
 
 #include "far_ext/limit/limitRows.h"
+#include "far_ext/stencil/interpolationMode.h"
+#include "far_ext/vtr/report.h"
 
 #include <algorithm>
 #include <string>

@@ -2,11 +2,28 @@
 #ifndef OPENSUBDIVHEX_FAR_EXT_EXECUTOR_H
 #define OPENSUBDIVHEX_FAR_EXT_EXECUTOR_H
 
-#include "threads.h"
+#include "export.h"
 
 #include <functional>
 
+#ifdef _OPENMP
+#include <omp.h>
+#endif
+
 namespace OpenSubdivHex::FarExt {
+
+/// \brief Sets how many threads each call of this library, of all its parts, uses at most from now on
+/// when the calling thread makes it; other threads of the program keep their own number.
+///
+/// Until then, and again after 0 or less, the Executor in use says: the default one that of OpenMP,
+/// which is omp_set_num_threads() of the calling thread or OMP_NUM_THREADS, and in a build without
+/// OpenMP that of the processors.  Results do not depend on the number.
+///
+/// For one call, see ExecutorScope.
+OPENSUBDIVHEX_API void SetNumThreads(int numThreads);
+
+/// How many threads a call from the calling thread uses at most, 1 or more.
+OPENSUBDIVHEX_API int GetNumThreads();
 
 /// \brief Runs loops on threads: what a host implements to have the calls of this library, of
 /// all its parts, work on threads of its own.
@@ -94,10 +111,32 @@ private:
 /// What a call throws is thrown again when all have ended; others may then be left out.
 OPENSUBDIVHEX_API void ParallelFor(int count, std::function<void(int)> const &function);
 
-namespace internal {
-/// What SetNumThreads() or an ExecutorScope says for calls from the calling thread; 0: the executor.
-OPENSUBDIVHEX_API int GetChosenNumThreads();
-} // namespace internal
+#ifdef _OPENMP
+/// \brief Runs loops on the threads of OpenMP, those of the calling thread's team: for hosts that
+/// have no others, or say by OMP_PROC_BIND and the like where they run.
+///
+/// There only in programs compiled with OpenMP; the library itself does not know it.
+///
+/// OpenMP waits at the end of a loop for all threads of the team, for those too that find nothing to
+/// do, and its threads keep their processors while they wait, unless OMP_WAIT_POLICY is passive.
+/// Beside other threads that are busy a call can be many times slower so than with the default
+/// executor, or on one thread (benchmark busy).
+class OmpExecutor : public Executor {
+public:
+    int GetNumThreads() const override { return omp_get_max_threads(); }
+
+    void ParallelFor(int count, std::function<void(int)> const &function) override {
+        if (count < 1) {
+            return;
+        }
+        int const numThreads = FarExt::GetNumThreads();
+#pragma omp parallel for schedule(dynamic) num_threads(count < numThreads ? count : numThreads)
+        for (int i = 0; i < count; ++i) {
+            function(i);
+        }
+    }
+};
+#endif
 
 } // namespace OpenSubdivHex::FarExt
 

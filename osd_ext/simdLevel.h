@@ -8,7 +8,7 @@
 
 namespace OpenSubdivHex::OsdExt {
 
-/// \brief The instructions that CpuEvaluator, OmpEvaluator and TbbEvaluator use, each level above the
+/// \brief The instructions that CpuEvaluator and ParallelEvaluator use, each level above the
 /// one before it.
 ///
 /// Avx2 and Avx512 are there when the library was built by GCC or Clang for x86-64.

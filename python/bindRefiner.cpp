@@ -223,9 +223,9 @@ createRefiner(py::object const &faces, py::object const &numVertices, py::object
     sdcOptions.SetCreasingMethod(
         TakeEnum<OpenSubdiv::Sdc::Options::CreasingMethod>(creasingMethod, "creasing_method"));
     TopologyRefinerFactory::Options options;
-    options.schemeOptions.faceMask = TakeEnum<FaceMask>(faceMask, "face_mask");
-    options.schemeOptions.schemeType = TakeEnum<SchemeType>(schemeType, "scheme_type");
-    options.schemeOptions.firstStep = TakeEnum<FirstStep>(firstStep, "first_step");
+    options.hexSchemeOptions.faceMask = TakeEnum<FaceMask>(faceMask, "face_mask");
+    options.hexSchemeOptions.schemeType = TakeEnum<SchemeType>(schemeType, "scheme_type");
+    options.hexSchemeOptions.firstStep = TakeEnum<FirstStep>(firstStep, "first_step");
 
     BaseMesh mesh;
     if (faceOffsets.is_none()) {

@@ -9,7 +9,7 @@
 #include "progress.h"
 #include "statistics.h"
 
-#include "far_ext/threads.h"
+#include "far_ext/executor.h"
 #include "osd_ext/simdLevel.h"
 #include "tools/mesh/fileError.h"
 #include "tools/mesh/meshText.h"
