@@ -232,7 +232,7 @@ def test_levels_channels_and_ranges(refiner):
     evaluator, primvars = osh.RefinementEvaluator(refiner), osh.PrimvarRefiner(refiner)
     table = osh.StencilTable(refiner)
     dst = np.zeros((table.num_stencils, 3), np.float32)
-    limit = osh.LimitStencilTable(refiner)
+    limit = osh.LimitStencilTable(refiner, 0)
     calls = [
         lambda: refiner.get_level(3), lambda: refiner.get_level(-1),
         lambda: evaluator.evaluate(CUBE_POSITIONS, 3),
@@ -277,7 +277,7 @@ def test_further_arguments(refiner):
         (lambda: osh.StencilTable(None), TypeError, "refiner"),
         (lambda: osh.PrimvarRefiner(None), TypeError, "refiner"),
         (lambda: osh.RefinementEvaluator(None), TypeError, "refiner"),
-        (lambda: osh.LimitStencilTable(refiner, generate_vertices=False), osh.StatusError, ""),
+        (lambda: osh.LimitStencilTable(refiner, 0, generate_vertices=False), osh.StatusError, ""),
         (lambda: osh.CpuEvaluator.eval_stencils(table, CUBE_POSITIONS), TypeError,
          "table: evaluators take float32"),
         (lambda: osh.CpuEvaluator.eval_stencils(None, CUBE_POSITIONS), TypeError, ""),

@@ -202,7 +202,7 @@ def test_compact_tables_are_smaller():
 
 
 def test_limit_tables_are_of_the_last_level_by_default():
-    refiner = refine(CUBE_FACES, 2, full_topology_in_last_level=True)
+    refiner = refine(CUBE_FACES, 2, full=True)
     for factorized in (True, False):
         table = osh.LimitStencilTable(refiner, factorize_intermediate_levels=factorized)
         same = osh.LimitStencilTable(refiner, 2, factorize_intermediate_levels=factorized)
