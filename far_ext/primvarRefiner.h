@@ -13,7 +13,7 @@ namespace OpenSubdivHex::FarExt {
 namespace internal {
 class LimitRows;
 
-/// What the elements of a user's array are counted in: its \c size_type, as of std::vector, else Index.
+/// The type that counts elements of a user's array: its \c size_type, as of std::vector, else Index.
 template <class ARRAY, class = void>
 struct ElementIndex {
     using Type = Far::Index;
@@ -192,7 +192,7 @@ public:
         return true;
     }
 
-    /// \brief The same with first derivatives, those that LimitStencilTableFactory says, on side 0
+    /// \brief Overload with the first derivatives of LimitStencilTableFactory, on side 0
     /// of each vertex (see LimitSides).
     template <class T, class U, class U1, class U2>
     bool Limit(T const &src, U &dstPos, U1 &dstTan1, U2 &dstTan2,

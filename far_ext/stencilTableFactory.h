@@ -23,31 +23,37 @@ struct StencilTableTypes {
 /// \brief In single precision.
 template <>
 struct StencilTableTypes<float> {
-    /// What the Osd evaluators take.
+    /// The type that Osd's evaluators take.
     using Table = Far::StencilTable;
 };
 
-/// \brief What the stencils interpolate, spelled as in Far::StencilTableFactory.
+/// \brief The kind of data that stencils interpolate, spelled as in Far::StencilTableFactory.
 enum StencilMode : int {
     INTERPOLATE_VERTEX,      ///< vertex data, with the masks of the scheme
     INTERPOLATE_VARYING,     ///< varying data, linearly
     INTERPOLATE_FACE_VARYING ///< the values of a face-varying channel
 };
 
-/// \brief What a stencil table holds and takes: see StencilTableFactoryReal::GetSize.
+/// \brief Stencils, weights and bytes of a stencil table: see StencilTableFactoryReal::GetSize.
 struct StencilTableSize {
-    std::int64_t numStencils = 0;
-    std::int64_t numWeights = 0;
-    std::int64_t numBytes = 0; ///< of the table's arrays
+    std::int64_t numStencils = 0; ///< rows of the table
+    std::int64_t numWeights = 0;  ///< of all stencils
+    std::int64_t numBytes = 0;    ///< of the table's arrays
 };
 
 /// \brief Makes Far stencil tables of hexagonal refinements, for any Osd evaluator.
+///
+/// \code
+///     FarExt::StencilTableFactory::Options options;
+///     options.generateIntermediateLevels = false; // the last level only
+///     auto table = FarExt::StencilTableFactory::Create(*refiner, options);
+/// \endcode
 ///
 /// Several threads may call it at once, also for the same refiner.  std::bad_alloc passes through.
 template <typename REAL>
 class OPENSUBDIVHEX_API StencilTableFactoryReal {
 public:
-    /// What is made: Far::StencilTable, or Far::StencilTableReal<double>.
+    /// Far::StencilTable, or Far::StencilTableReal<double>.
     using Table = typename StencilTableTypes<REAL>::Table;
 
     /// \brief The fields of Far::StencilTableFactory::Options, with their meaning.
@@ -87,7 +93,7 @@ public:
     ///          names).
     static std::unique_ptr<Table const> Create(TopologyRefiner const &refiner, Options options,
                                                CallStatus *status = nullptr);
-    /// The same with the default options.
+    /// Overload with default options.
     static std::unique_ptr<Table const> Create(TopologyRefiner const &refiner,
                                                CallStatus *status = nullptr) {
         return Create(refiner, Options(), status);
@@ -108,7 +114,7 @@ public:
     /// \brief Makes the table of the refined faces, and halves of hexagons, that lie in some base
     /// faces: those whose TopologyLevel::GetFaceBaseFace() is one of \p baseFaces.
     ///
-    /// Of each level in the table it has the vertices of these, or their values, in ascending order:
+    /// For each level in the table it has the vertices of these faces, or their values, in ascending order:
     /// GetVerticesOfFaces() says which; the stencils are, bit for bit, those that Create() makes for
     /// them, and index the control vertices of the whole mesh.  A hexagon that lies half in the
     /// selection has the four vertices of that half (kHexagonHalves).  What selections that share no
@@ -150,12 +156,17 @@ struct LimitStencilTableTypes {
 /// \brief In single precision.
 template <>
 struct LimitStencilTableTypes<float> {
-    /// What the Osd evaluators take.
+    /// The type that Osd's evaluators take.
     using Table = Far::LimitStencilTable;
 };
 
-/// \brief The sides of the vertices of a level: at a vertex where two or more infinitely sharp
-/// edges meet, the surface has a tangent plane for each part of its faces that they bound.
+/// \brief Numbers the sides of the vertices of a level, each of which has a normal: at a vertex where two or more
+/// infinitely sharp edges meet, the surface has a tangent plane for each part of its faces that they bound.
+///
+/// \code
+///     FarExt::LimitSides const sides(level);
+///     int const normal = sides.FindSide(level, face, corner); // of a table with generateFurtherSides
+/// \endcode
 ///
 /// Where fewer meet, and at sharp boundaries without creases, a vertex has one side.  Sides are
 /// counted around the vertex, in the order of its faces and from the first sharp edge on.  Side 0
@@ -194,7 +205,7 @@ public:
     ///
     /// \param level  that of the constructor, or one for which IsOf() is true
     /// \param half   of a hexagon with an infinitely sharp diagonal, the half that is meant, as in
-    ///               kHexagonHalves; of no matter for other faces
+    ///               kHexagonHalves; ignored for other faces
     Index FindSide(TopologyLevel const &level, Index face, int local, int half = 0) const;
 
 private:
@@ -230,6 +241,15 @@ private:
 
 /// \brief Makes limit stencil tables of hexagonal refinements: points of the limit surface and its
 /// first derivatives there, as weighted sums of control vertices, for any Osd evaluator.
+///
+/// \code
+///     FarExt::TopologyRefiner::UniformOptions refineOptions(2);
+///     refineOptions.fullTopologyInLastLevel = true;
+///     refiner->RefineUniform(refineOptions);
+///     FarExt::LimitStencilTableFactory::Options options;
+///     options.level = 2;
+///     auto table = FarExt::LimitStencilTableFactory::Create(*refiner, options);
+/// \endcode
 ///
 /// The derivatives du and dv span the tangent plane, and du x dv points to the side from which the
 /// faces are counter-clockwise.  They are derivatives by coordinates u and v in which the edges of
@@ -270,7 +290,7 @@ private:
 template <typename REAL>
 class OPENSUBDIVHEX_API LimitStencilTableFactoryReal {
 public:
-    /// What is made: Far::LimitStencilTable, or Far::LimitStencilTableReal<double>.
+    /// Far::LimitStencilTable, or Far::LimitStencilTableReal<double>.
     using Table = typename LimitStencilTableTypes<REAL>::Table;
 
     /// \brief Which points, in this order: the vertices of the level, the further sides of

@@ -8,8 +8,12 @@
 namespace OpenSubdivHex::OsdExt {
 
 /// \brief Evaluates stencils and patches on the calling thread, in ascending order: a faster
-/// Osd::CpuEvaluator.  See StencilEvaluator and PatchEvaluator for its functions, SimdLevel for the
-/// instructions that it uses for stencils.
+/// Osd::CpuEvaluator.  StencilEvaluator and PatchEvaluator have its functions, SimdLevel its
+/// instructions for stencils.
+///
+/// \code
+///     OsdExt::CpuEvaluator::EvalStencils(srcBuffer, srcDesc, dstBuffer, dstDesc, table.get());
+/// \endcode
 class OPENSUBDIVHEX_API CpuEvaluator : public StencilEvaluator<CpuEvaluator>,
                                        public PatchEvaluator<CpuEvaluator> {
     friend class StencilEvaluator<CpuEvaluator>;
@@ -22,6 +26,10 @@ class OPENSUBDIVHEX_API CpuEvaluator : public StencilEvaluator<CpuEvaluator>,
 
 /// \brief Evaluates stencils and patches on the threads of FarExt::GetExecutor(), at most
 /// FarExt::GetNumThreads(): a faster Osd::OmpEvaluator and Osd::TbbEvaluator.
+///
+/// \code
+///     OsdExt::ParallelEvaluator::EvalStencils(srcBuffer, srcDesc, dstBuffer, dstDesc, table.get());
+/// \endcode
 ///
 /// Results are those of CpuEvaluator, bit for bit.  Ranges of few stencils are evaluated on the
 /// calling thread.

@@ -60,7 +60,7 @@ public:
     static std::unique_ptr<CudaRefinementEvaluator> Create(FarExt::TopologyRefiner const &refiner,
                                                            Options options,
                                                            FarExt::CallStatus *status = nullptr);
-    /// The same with the default options.
+    /// Overload with default options.
     static std::unique_ptr<CudaRefinementEvaluator> Create(FarExt::TopologyRefiner const &refiner,
                                                            FarExt::CallStatus *status = nullptr) {
         return Create(refiner, Options(), status);

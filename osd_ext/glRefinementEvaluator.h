@@ -63,7 +63,7 @@ public:
     static std::unique_ptr<GLRefinementEvaluator> Create(FarExt::TopologyRefiner const &refiner,
                                                          Options options,
                                                          FarExt::CallStatus *status = nullptr);
-    /// The same with the default options.
+    /// Overload with default options.
     static std::unique_ptr<GLRefinementEvaluator> Create(FarExt::TopologyRefiner const &refiner,
                                                          FarExt::CallStatus *status = nullptr) {
         return Create(refiner, Options(), status);
@@ -71,10 +71,9 @@ public:
 
     /// \brief Writes the triangles of a level, three vertices each, unsigned integers of 32 bits.
     ///
-    /// Those of a level whose faces are all drawn whole: those of CreateTriangleIndices() with cutBaseFaces
-    /// false, CreaseCuts::NoCreases and drawHoles, in its order.  They are made on the device, those of
-    /// F-faces from the numbering alone, those of other faces from their vertices, which the first call
-    /// for a level loads; it refers to the refiner that was given.
+    /// All faces are drawn whole: the triangles are those of CreateTriangleIndices() with cutBaseFaces false,
+    /// CreaseCuts::NoCreases and drawHoles, in its order.  The device makes those of F-faces from the numbering, and those
+    /// of other faces from their vertices, which the first call for a level loads from the refiner.
     ///
     /// Triangles of cut faces are CreateTriangleIndices()'s: where faces are cut depends on tags, seams and
     /// base faces, which no device has, and they change with the refinement alone, not with frames.

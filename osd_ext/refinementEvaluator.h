@@ -31,12 +31,11 @@ struct BufferView {
 
 } // namespace internal
 
-/// \brief The functions that evaluators of refined levels have in common: RefinementEvaluator,
-/// GLRefinementEvaluator and CudaRefinementEvaluator, each of which is its EVALUATOR.
+/// \brief Functions of RefinementEvaluator, GLRefinementEvaluator and CudaRefinementEvaluator that evaluate levels.
 ///
-/// **Buffers.** Sources, SRC, are BINDING::Source, and destinations, DST, DU and DV, BINDING::Buffer: floats,
-/// addresses or names.  In place of them all functions take pointers to objects that bind such, as Osd's
-/// vertex buffers do; a null pointer is a buffer that is null.
+/// **Buffers.** Sources SRC are of type BINDING::Source, destinations DST, DU and DV of type BINDING::Buffer: floats,
+/// addresses or names.  All functions also take pointers to objects that bind one of these, as Osd's vertex buffers do; a
+/// null pointer is a null buffer.
 ///
 /// **Elements.** Element j of a buffer is the \c length floats from <tt>offset + j * stride</tt> on.
 /// Nothing else is written.  Source and destination may be one buffer, as long as no float is both read
@@ -80,10 +79,9 @@ public:
     }
 
     /// @name The limit surface
-    /// Of the vertices of a level, with full topology, whose values it makes on the way: points, and
-    /// first derivatives on side 0, as FarExt::LimitStencilTableFactory says; what comes out is what
-    /// its table gives, up to the rounding of floats, of which derivatives have more at each level,
-    /// as they are differences of near values.  The cross product of the derivatives is the normal.
+    /// Limit points of the vertices of a level with full topology, and first derivatives on side 0.  The cross product of
+    /// the derivatives is the normal.  Results are those of a table of FarExt::LimitStencilTableFactory, except for
+    /// rounding, which grows with the level in derivatives, because these are differences of near values.
     ///
     /// The first frame of a level finds the masks, on the processor, and needs the refiner as it was.
     ///
@@ -156,14 +154,13 @@ struct CpuBinding {
     }
 };
 
-/// \brief Computes the primvars of refined levels straight from the control values, level by level,
-/// without a stencil table: the fastest way to refine a whole mesh again and again.
+/// \brief Evaluates refined levels straight from control values, without a stencil table: the fastest way to refine a whole
+/// mesh frame after frame.
 ///
-/// Values are those that a stencil table of the same refiner gives, with all rules for
-/// boundaries, creases, corners and face-varying seams, up to the rounding of floats (1e-6 of the
-/// largest control value), for values up to half of the largest float.  Two meshes that share a
-/// sharp border line, with the same sharpness at its vertices, get the same values on it, bit for
-/// bit, however either numbers and orients it.
+/// Results are those of a stencil table of the same refiner, with all rules for boundaries, creases, corners and
+/// face-varying seams, within rounding (1e-6 of the largest control value), for values up to half of the largest float.
+/// Two meshes that share a sharp border line, with the same sharpness at its vertices, get bitwise equal values on it,
+/// whatever their numbering and orientation.
 ///
 /// \code
 ///     auto const evaluator = RefinementEvaluator::Create(refiner);
@@ -177,24 +174,22 @@ struct CpuBinding {
 /// and nothing else is read, not even beside them.  They fail, too, if the refiner refined or unrefined in
 /// the meantime.
 ///
-/// **Limits.** A control value that is not a number is in no more of what comes out than with a limit
-/// stencil table, but in lattices, where all vertices in a face of level 0 have it.
+/// **Limits.** A frame of EvaluateLimit() takes longer than one of Evaluate():
 ///
-/// Where level 0 is a regular lattice of triangles, quads or hexagons, all vertices come from it:
-/// there a frame takes two to four times as long as Evaluate().  Elsewhere most come from hexagons of
-/// the levels before, six at a time: four to seven times as long on deep levels, of which the last
-/// one is needed for the other vertices alone.  These are those of level 0 and near irregular
-/// vertices, irregular faces and features, and all of the first two or three levels of meshes without
-/// hexagons: eight to ten times as long.
+/// | vertices                                                                    | times            |
+/// |-----------------------------------------------------------------------------|------------------|
+/// | in a regular lattice of triangles, quads or hexagons of level 0             | 2 to 4           |
+/// | in regular hexagons of deep levels, six at a time                           | 4 to 7           |
+/// | others: near irregular vertices, irregular faces and features, and all of   | 8 to 10          |
+/// | the first two or three levels of meshes without hexagons                    |                  |
 ///
-/// The first frame of a level takes as long as eight to forty, and keeps about 21 bytes for each vertex
-/// and 100 for each of the others.
+/// The first frame of a level takes as long as 8 to 40 later ones, and keeps about 21 bytes for each vertex, and 100 for
+/// each of the others.  A control value that is not a number reaches no more vertices than with a limit stencil table,
+/// except in lattices, where it reaches all vertices in a face of level 0.
 ///
-/// **Threads.** The work runs on the threads of FarExt::GetExecutor(), as many as
-/// FarExt::GetNumThreads() says.  Results are the same, bit for bit, for any number of threads, stride
-/// and offset, one level or all.  An evaluator keeps the levels below the one that was asked for, in
-/// memory that only the first frame takes: it must not be used by two threads at once.  Several
-/// evaluators may share a refiner.
+/// **Threads.** The work runs on the threads of FarExt::GetExecutor(), as many as FarExt::GetNumThreads() says.  Results have
+/// the same bits for any number of threads, stride and offset, for one level or all.  Two threads must not use one evaluator
+/// at once, because it keeps the levels in between.  Several evaluators may share a refiner.
 ///
 /// **Memory.** std::bad_alloc passes through, with nothing written.
 ///
@@ -203,9 +198,9 @@ struct CpuBinding {
 class OPENSUBDIVHEX_API RefinementEvaluator
     : public BufferEvaluator<RefinementEvaluator, CpuBinding> {
 public:
-    /// \brief What is evaluated, spelled as in FarExt::StencilTableFactory.
+    /// \brief The kind of data, spelled as in FarExt::StencilTableFactory.
     struct Options {
-        /// What the elements are.
+        /// The kind of data.
         FarExt::StencilMode interpolationMode = FarExt::INTERPOLATE_VERTEX;
         int fvarChannel = 0; ///< for INTERPOLATE_FACE_VARYING, whose elements are the values
     };
@@ -220,7 +215,7 @@ public:
     static std::unique_ptr<RefinementEvaluator> Create(FarExt::TopologyRefiner const &refiner,
                                                        Options options,
                                                        FarExt::CallStatus *status = nullptr);
-    /// The same with the default options.
+    /// Overload with default options.
     static std::unique_ptr<RefinementEvaluator> Create(FarExt::TopologyRefiner const &refiner,
                                                        FarExt::CallStatus *status = nullptr) {
         return Create(refiner, Options(), status);
@@ -259,7 +254,7 @@ namespace internal {
 class Device;
 class DeviceEvaluator;
 
-/// What a device calls a buffer: a name of OpenGL, or an address.
+/// A buffer of a device: a name of OpenGL, or an address.
 using DeviceBufferName = std::uint64_t;
 
 inline DeviceBufferName GetBufferName(unsigned name) { return name; }
@@ -279,7 +274,7 @@ struct DeviceValues {
 
 } // namespace internal
 
-/// \brief What GLRefinementEvaluator and CudaRefinementEvaluator have in common: refined levels on a
+/// \brief The common base of GLRefinementEvaluator and CudaRefinementEvaluator: refined levels on a
 /// device, without a stencil table.  BufferEvaluator has their functions for frames.
 ///
 /// Control values are refined level by level.  Of the topology, the device has about 8 bytes for
@@ -303,7 +298,7 @@ struct DeviceValues {
 /// call for a level needs the refiner as it was.
 class OPENSUBDIVHEX_API DeviceRefinementEvaluator {
 public:
-    /// What is evaluated.
+    /// The kind of data, and the channel.
     using Options = RefinementEvaluator::Options;
 
     /// The last level that can be evaluated, that of the refiner when this was made.

@@ -52,17 +52,19 @@ private:
     friend struct internal::StencilTypes;
 };
 
-/// \brief A stencil table in blocks: stencils that follow each other and have the same indices, as
-/// those of the corners of a face do, share one list of them.
+/// \brief A stencil table in less memory: consecutive stencils with the same indices, such as those of the corners of a
+/// face, share one list of indices.
 ///
-/// Evaluated by CpuEvaluator and ParallelEvaluator, with the results of the table that it was made from,
-/// bit for bit.  For tables of the hexagonal scheme it takes 0.62 to 0.65 of the memory, and
-/// evaluation is 1.1 to 1.7 times as fast on one thread (benchmark evaluation, compact table).  A
-/// table whose stencils share no lists, as those of Catmull-Clark, gets larger.
+/// \code
+///     auto compact = OsdExt::CompactStencilTable::Create(*table);
+///     OsdExt::ParallelEvaluator::EvalStencils(src, desc, dst, desc, compact.get());
+/// \endcode
+///
+/// CpuEvaluator and ParallelEvaluator take it, with the results of the table that it was made from, bit for bit;
+/// other evaluators do not.  For tables of the hexagonal scheme it takes 0.62 to 0.65 of the memory, and evaluation is 1.1
+/// to 1.7 times as fast on one thread (benchmark evaluation, compact table).  A table of Catmull-Clark gets larger.
 ///
 /// Several threads may make, and evaluate, the same table at once.  std::bad_alloc passes through.
-///
-/// It is this library's own: other evaluators, on GPUs for one, take the Far::StencilTable.
 class OPENSUBDIVHEX_API CompactStencilTable {
 public:
     ~CompactStencilTable();
@@ -76,7 +78,7 @@ public:
     int GetNumControlVertices() const { return _numControlVertices; }
     /// Lists of indices that stencils share.
     int GetNumBlocks() const;
-    /// Of all arrays.
+    /// Bytes of all arrays.
     std::size_t GetNumBytes() const;
 
 private:
@@ -94,10 +96,8 @@ private:
     std::vector<float> _weights;
 };
 
-/// \brief The static functions of CpuEvaluator and ParallelEvaluator, which are its EVALUATOR.
-///
-/// They have the signatures of Osd::CpuEvaluator, so that templates over the evaluator, such as
-/// Osd::Mesh and EvalStencilsInPlace, accept them.  PatchEvaluator has the EvalPatches functions.
+/// \brief Functions of CpuEvaluator and ParallelEvaluator that evaluate stencils, with the signatures of
+/// Osd::CpuEvaluator, so that templates such as Osd::Mesh accept them.  PatchEvaluator has the EvalPatches functions.
 ///
 /// **Tables.** Any Far::StencilTable or Far::LimitStencilTable, of this library or of OpenSubdiv,
 /// or a class with their functions, and CompactStencilTable.  Offsets may be missing, as Far's
@@ -153,7 +153,7 @@ public:
                          {bind(dstBuffer, dstDesc, *stencilTable, stencilTable->GetWeights())});
     }
 
-    /// The same of a table in blocks.
+    /// Overload for a CompactStencilTable.
     template <class SRC_BUFFER, class DST_BUFFER>
     static bool
     EvalStencils(SRC_BUFFER *srcBuffer, Osd::BufferDescriptor const &srcDesc, DST_BUFFER *dstBuffer,
@@ -165,7 +165,7 @@ public:
                                     stencilTable->getRows(), 0, stencilTable->GetNumBlocks());
     }
 
-    /// The same with first derivatives, which Far::LimitStencilTable has.
+    /// Overload with first derivatives, for a Far::LimitStencilTable.
     template <class SRC_BUFFER, class DST_BUFFER, class STENCIL_TABLE>
     static bool
     EvalStencils(SRC_BUFFER *srcBuffer, Osd::BufferDescriptor const &srcDesc, DST_BUFFER *dstBuffer,
@@ -180,7 +180,7 @@ public:
                           bind(dvBuffer, dvDesc, *stencilTable, stencilTable->GetDvWeights())});
     }
 
-    /// The same with first and second derivatives.
+    /// Overload with first and second derivatives.
     template <class SRC_BUFFER, class DST_BUFFER, class STENCIL_TABLE>
     static bool
     EvalStencils(SRC_BUFFER *srcBuffer, Osd::BufferDescriptor const &srcDesc, DST_BUFFER *dstBuffer,
@@ -223,7 +223,7 @@ public:
                     start, end);
     }
 
-    /// The same with first derivatives.
+    /// Overload with first derivatives.
     static bool EvalStencils(float const *src, Osd::BufferDescriptor const &srcDesc, //
                              float *dst, Osd::BufferDescriptor const &dstDesc,       //
                              float *du, Osd::BufferDescriptor const &duDesc,         //
@@ -236,7 +236,7 @@ public:
                     {sizes, offsets, indices, nullptr}, start, end);
     }
 
-    /// The same with first and second derivatives.
+    /// Overload with first and second derivatives.
     static bool EvalStencils(float const *src, Osd::BufferDescriptor const &srcDesc, //
                              float *dst, Osd::BufferDescriptor const &dstDesc,       //
                              float *du, Osd::BufferDescriptor const &duDesc,         //
@@ -292,8 +292,13 @@ private:
     }
 };
 
-/// \brief Makes a buffer (such as Osd::CpuVertexBuffer) for EvalStencilsInPlace: room for the
-/// control vertices of \p table and, after them, for its stencils.
+/// \brief Makes a buffer (such as Osd::CpuVertexBuffer) for the control vertices of \p table and, behind them, its results.
+///
+/// \code
+///     auto buffer = OsdExt::CreateInPlaceBuffer<Osd::CpuVertexBuffer>(*table, 3);
+///     buffer->UpdateData(positions, 0, table->GetNumControlVertices());
+///     OsdExt::EvalStencilsInPlace<OsdExt::ParallelEvaluator>(*table, buffer.get());
+/// \endcode
 ///
 /// \param numElements  floats per vertex
 /// \return  null for less than 1, and where the floats of the buffer are more than 2^31 - 1, which
