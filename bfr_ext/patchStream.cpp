@@ -5,8 +5,10 @@
 #include "stream/patchPlans.h"
 #include "stream/streamTypes.h"
 
-#include "far_ext/threads.h"
+#include "far_ext/executor.h"
+#include "far_ext/stencil/interpolationMode.h"
 #include "far_ext/vtr/parallel.h"
+#include "far_ext/vtr/report.h"
 
 #include <algorithm>
 #include <atomic>

@@ -5,6 +5,8 @@
 #include "cell/facePatches.h"
 
 #include "far_ext/limit/limitRows.h"
+#include "far_ext/stencil/interpolationMode.h"
+#include "far_ext/vtr/report.h"
 
 #include <algorithm>
 #include <string>

@@ -13,6 +13,10 @@
 #include <utility>
 #include <vector>
 
+namespace OpenSubdivHex::FarExt {
+enum class Interpolation;
+} // namespace OpenSubdivHex::FarExt
+
 namespace OpenSubdivHex::BfrExt {
 
 namespace internal {

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "executor.h"
 
-#include "threads.h"
 #include "vtr/parallel.h"
 
 #include <algorithm>
@@ -33,8 +32,6 @@ void SetNumThreads(int numThreads) { chosenNumThreads = std::max(0, numThreads);
 int GetNumThreads() {
     return chosenNumThreads > 0 ? chosenNumThreads : std::max(1, GetExecutor().GetNumThreads());
 }
-
-int internal::GetChosenNumThreads() { return chosenNumThreads; }
 
 ExecutorScope::ExecutorScope(Executor *executor, int numThreads)
     : _executor(chosenExecutor), _numThreads(chosenNumThreads) {

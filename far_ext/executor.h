@@ -2,11 +2,27 @@
 #ifndef OPENSUBDIVHEX_FAR_EXT_EXECUTOR_H
 #define OPENSUBDIVHEX_FAR_EXT_EXECUTOR_H
 
-#include "threads.h"
+#include "export.h"
 
 #include <functional>
 
+#ifdef _OPENMP
+#include <omp.h>
+#endif
+
 namespace OpenSubdivHex::FarExt {
+
+/// \brief Sets how many threads each call of the calling thread uses at most, from now on.
+///
+/// 0 or less: as many as the Executor says, which is the initial state.  The default executor says OpenMP's number
+/// (omp_set_num_threads() of the calling thread, or OMP_NUM_THREADS); in a build without OpenMP the number of processors.
+/// Results do not depend on the number.
+///
+/// For one call, see ExecutorScope.
+OPENSUBDIVHEX_API void SetNumThreads(int numThreads);
+
+/// How many threads a call from the calling thread uses at most, 1 or more.
+OPENSUBDIVHEX_API int GetNumThreads();
 
 /// \brief Interface that a host implements to run the loops of this library on its own threads.
 ///
@@ -96,10 +112,35 @@ private:
 /// If a call throws, ParallelFor() throws the same when all running calls have ended; other calls may be left out.
 OPENSUBDIVHEX_API void ParallelFor(int count, std::function<void(int)> const &function);
 
-namespace internal {
-/// Number of threads that SetNumThreads() or an ExecutorScope set for the calling thread; 0: the executor's.
-OPENSUBDIVHEX_API int GetChosenNumThreads();
-} // namespace internal
+#ifdef _OPENMP
+/// \brief Runs loops on OpenMP's threads: for hosts that bind these to processors (OMP_PROC_BIND).
+///
+/// Header only, and only in programs compiled with OpenMP.
+///
+/// \code
+///     FarExt::OmpExecutor executor;
+///     FarExt::ExecutorScope const scope(&executor);
+/// \endcode
+///
+/// OpenMP waits at the end of a loop for all threads of the team, idle ones included, and threads keep their processors
+/// while they wait unless OMP_WAIT_POLICY is passive.  Beside other busy threads a call can be many times slower than with
+/// the default executor, or than on one thread (benchmark busy).
+class OmpExecutor : public Executor {
+public:
+    int GetNumThreads() const override { return omp_get_max_threads(); }
+
+    void ParallelFor(int count, std::function<void(int)> const &function) override {
+        if (count < 1) {
+            return;
+        }
+        int const numThreads = FarExt::GetNumThreads();
+#pragma omp parallel for schedule(dynamic) num_threads(count < numThreads ? count : numThreads)
+        for (int i = 0; i < count; ++i) {
+            function(i);
+        }
+    }
+};
+#endif
 
 } // namespace OpenSubdivHex::FarExt
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "limitStencilTableFactory.h"
+#include "stencilTableFactory.h"
 
 #include "far_ext/limit/latticeStencils.h"
 #include "far_ext/limit/limitMultiplier.h"
@@ -7,6 +7,7 @@
 #include "far_ext/stencil/levelStencils.h"
 #include "far_ext/vtr/hierarchy.h"
 #include "far_ext/vtr/parallel.h"
+#include "far_ext/vtr/report.h"
 
 #include <atomic>
 #include <limits>
@@ -554,6 +555,9 @@ template <typename REAL>
 auto LimitStencilTableFactoryReal<REAL>::Create(TopologyRefiner const &refiner, Options options,
                                                 CallStatus *status)
     -> std::unique_ptr<Table const> {
+    if (options.level == -1) {
+        options.level = refiner.GetMaxLevel();
+    }
     if (!internal::Report(checkLimitOptions(refiner, options), status)) {
         return nullptr;
     }

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "patchMap.h"
+#include "patchTableFactory.h"
 
 #include "far_ext/patch/patchChecks.h"
 #include "far_ext/vtr/baseCoords.h"
 #include "far_ext/vtr/faceCoords.h"
+#include "far_ext/vtr/report.h"
 
 #include <algorithm>
 #include <cmath>

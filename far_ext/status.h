@@ -119,25 +119,6 @@ private:
 /// Far::SetErrorCallback is not.
 OPENSUBDIVHEX_API void SetErrorCallback(Far::ErrorCallbackFunc callback);
 
-namespace internal {
-
-/// Assigns \p result to \p status (when given) and sends a failure to the installed callback.
-/// Returns result.IsOk().
-OPENSUBDIVHEX_API bool Report(CallStatus const &result, CallStatus *status);
-
-/// A failure that no single component is to blame for.
-inline CallStatus Failure(StatusCode code, std::string message) {
-    return CallStatus(code, ComponentType::NoComponent, Far::INDEX_INVALID, std::move(message));
-}
-
-/// Whether \p value, which a cast may have made of any number, is one of an enumeration that goes
-/// from 0 to \p last.
-template <typename ENUM>
-bool IsInEnum(int value, ENUM last) {
-    return 0 <= value && value <= int(last);
-}
-
-} // namespace internal
 } // namespace FarExt
 } // namespace OpenSubdivHex
 

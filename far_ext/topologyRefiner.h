@@ -172,16 +172,6 @@ private:
     std::vector<TopologyLevel> _levels;
 };
 
-namespace internal {
-
-/// InvalidArgument where a channel is none of the \p numChannels face-varying ones of a mesh.
-OPENSUBDIVHEX_API CallStatus CheckChannel(int channel, int numChannels);
-/// By which masks the values of a channel, which is in range, are interpolated.
-OPENSUBDIVHEX_API Interpolation GetChannelInterpolation(TopologyRefiner const &refiner,
-                                                        int channel);
-
-} // namespace internal
-
 } // namespace OpenSubdivHex::FarExt
 
 #endif

@@ -4,6 +4,7 @@
 #include "far_ext/vtr/baseMesh.h"
 #include "far_ext/vtr/inputChecks.h"
 #include "far_ext/vtr/parallel.h"
+#include "far_ext/vtr/report.h"
 
 #include <algorithm>
 
@@ -382,14 +383,14 @@ CallStatus DescriptorReader::Read() {
 std::unique_ptr<TopologyRefiner>
 TopologyRefinerFactory::create(Sdc::Options sdcOptions, Options options, CallStatus *status,
                                std::function<CallStatus(internal::BaseMesh &)> const &read) {
-    CallStatus result = internal::CheckOptions(options.schemeOptions, sdcOptions);
+    CallStatus result = internal::CheckOptions(options.hexSchemeOptions, sdcOptions);
     internal::BaseMesh mesh(sdcOptions);
     if (result.IsOk()) {
         result = read(mesh);
     }
     std::unique_ptr<internal::Hierarchy> hierarchy = mesh.Release();
     if (result.IsOk()) {
-        if (CallStatus scheme = internal::CheckScheme(options.schemeOptions, *hierarchy);
+        if (CallStatus scheme = internal::CheckScheme(options.hexSchemeOptions, *hierarchy);
             !scheme.IsOk()) {
             result = std::move(scheme);
         }
@@ -398,7 +399,7 @@ TopologyRefinerFactory::create(Sdc::Options sdcOptions, Options options, CallSta
         return nullptr;
     }
     return std::make_unique<TopologyRefiner>(std::move(hierarchy), sdcOptions,
-                                             options.schemeOptions);
+                                             options.hexSchemeOptions);
 }
 
 std::unique_ptr<TopologyRefiner> TopologyRefinerFactory::Create(Far::TopologyRefiner const &base,

@@ -2,8 +2,8 @@
 #ifndef OPENSUBDIVHEX_OSD_EXT_CUDA_REFINEMENT_EVALUATOR_H
 #define OPENSUBDIVHEX_OSD_EXT_CUDA_REFINEMENT_EVALUATOR_H
 
-#include "cudaStream.h"
-#include "deviceRefinementEvaluator.h"
+#include "cudaEvaluator.h"
+#include "refinementEvaluator.h"
 
 #include <memory>
 

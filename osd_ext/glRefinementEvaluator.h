@@ -2,7 +2,7 @@
 #ifndef OPENSUBDIVHEX_OSD_EXT_GL_REFINEMENT_EVALUATOR_H
 #define OPENSUBDIVHEX_OSD_EXT_GL_REFINEMENT_EVALUATOR_H
 
-#include "deviceRefinementEvaluator.h"
+#include "refinementEvaluator.h"
 
 #include <memory>
 

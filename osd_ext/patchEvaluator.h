@@ -2,16 +2,52 @@
 #ifndef OPENSUBDIVHEX_OSD_EXT_PATCH_EVALUATOR_H
 #define OPENSUBDIVHEX_OSD_EXT_PATCH_EVALUATOR_H
 
-#include "patchEvaluation.h"
+#include "far_ext/export.h"
 
-namespace OpenSubdivHex::OsdExt {
+#include <opensubdiv/osd/bufferDescriptor.h>
+#include <opensubdiv/osd/types.h>
 
-/// \brief Functions of CpuEvaluator, OmpEvaluator and TbbEvaluator that evaluate patches, with the
+namespace OpenSubdivHex {
+
+namespace Osd = OpenSubdiv::Osd;
+
+namespace OsdExt {
+
+namespace internal {
+struct PatchTypes;
+} // namespace internal
+
+/// \brief What PatchEvaluator gives to its evaluators: nothing for users.
+class OPENSUBDIVHEX_API PatchEvaluatorBase {
+protected:
+    /// Where values at places of patches go, or one of their derivatives; null: nowhere.
+    struct PatchOutput {
+        float *dst;
+        Osd::BufferDescriptor desc;
+    };
+
+    /// Places of patches to be evaluated, as Osd's evaluators have them.
+    struct PatchTask {
+        float const *src;
+        Osd::BufferDescriptor srcDesc;
+        PatchOutput outputs[6]; ///< values; by s and t; by s twice, by s and t, by t twice
+        Osd::PatchCoord const *coords;
+        Osd::PatchArray const *arrays;
+        int const *indices;
+        Osd::PatchParam const *params;
+    };
+
+    /// Whether the descriptors are ones that can be evaluated, and all is there.
+    static bool checkPatchTask(PatchTask const &task, int numCoords);
+    /// Evaluates places [begin, end), with the same bits whatever the range.
+    static void evaluatePatches(PatchTask const &task, int begin, int end);
+
+private:
+    friend struct internal::PatchTypes;
+};
+
+/// \brief The functions of CpuEvaluator and ParallelEvaluator that evaluate patches, with the
 /// signatures of Osd::CpuEvaluator.
-///
-/// \code
-///     OsdExt::CpuEvaluator::EvalPatches(points, desc, dst, desc, numCoords, coords, cpuPatchTable);
-/// \endcode
 ///
 /// **Tables.** Osd::CpuPatchTable of any Far::PatchTable, of this library or of OpenSubdiv, or a class with
 /// its functions.  Patches of the types REGULAR, GREGORY_BASIS and QUADS, which those of Catmull-Clark and
@@ -33,7 +69,7 @@ namespace OpenSubdivHex::OsdExt {
 /// stride is less than the length, an offset is negative, or, where there are places, what is to be read
 /// is null.  Indices in coordinates, arrays and patches are not checked.
 template <class EVALUATOR>
-class PatchEvaluator {
+class PatchEvaluator : public PatchEvaluatorBase {
     using Desc = Osd::BufferDescriptor;
 
 public:
@@ -196,7 +232,7 @@ private:
         Osd::PatchParam const *params = nullptr;
     };
     struct Outputs {
-        internal::PatchOutput values[6];
+        PatchOutput values[6];
     };
 
     template <class TABLE>
@@ -220,29 +256,29 @@ private:
     }
 
     template <class BUFFER>
-    static internal::PatchOutput bind(BUFFER *buffer, Desc const &desc) {
+    static PatchOutput bind(BUFFER *buffer, Desc const &desc) {
         return {buffer ? buffer->BindCpuBuffer() : nullptr, desc};
     }
 
     template <class SRC, class COORDS>
     static bool eval(SRC *srcBuffer, Desc const &srcDesc, Outputs const &outputs, int numCoords,
                      COORDS *coords, Patches const &patches) {
-        internal::PatchTask task = {
-            srcBuffer ? srcBuffer->BindCpuBuffer() : nullptr,
-            srcDesc,
-            {},
-            coords ? static_cast<Osd::PatchCoord const *>(coords->BindCpuBuffer()) : nullptr,
-            patches.arrays,
-            patches.indices,
-            patches.params};
+        PatchTask task = {srcBuffer ? srcBuffer->BindCpuBuffer() : nullptr,
+                          srcDesc,
+                          {},
+                          coords ? static_cast<Osd::PatchCoord const *>(coords->BindCpuBuffer())
+                                 : nullptr,
+                          patches.arrays,
+                          patches.indices,
+                          patches.params};
         for (int i = 0; i < 6; ++i) {
             task.outputs[i] = outputs.values[i];
         }
         return run(task, numCoords);
     }
 
-    static bool run(internal::PatchTask const &task, int numCoords) {
-        if (!internal::CheckPatchTask(task, numCoords)) {
+    static bool run(PatchTask const &task, int numCoords) {
+        if (!checkPatchTask(task, numCoords)) {
             return false;
         }
         if (numCoords > 0) {
@@ -252,6 +288,7 @@ private:
     }
 };
 
-} // namespace OpenSubdivHex::OsdExt
+} // namespace OsdExt
+} // namespace OpenSubdivHex
 
 #endif

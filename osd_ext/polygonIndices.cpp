@@ -4,9 +4,11 @@
 #include "drawing/vertexSeparator.h"
 
 #include "far_ext/baseFaceMap.h"
+#include "far_ext/stencil/interpolationMode.h"
 #include "far_ext/vtr/buffer.h"
 #include "far_ext/vtr/hierarchy.h"
 #include "far_ext/vtr/parallel.h"
+#include "far_ext/vtr/report.h"
 
 #include <limits>
 #include <numeric>

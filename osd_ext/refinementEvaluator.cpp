@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "refinementEvaluator.h"
 
+#include "far_ext/stencil/interpolationMode.h"
 #include "far_ext/vtr/hierarchy.h"
 #include "far_ext/vtr/parallel.h"
+#include "far_ext/vtr/report.h"
 #include "osd_ext/refinement/evaluationChecks.h"
 #include "osd_ext/refinement/preparedLimit.h"
 #include "osd_ext/refinement/refinementKernel.h"

@@ -8,7 +8,7 @@
 
 namespace OpenSubdivHex::OsdExt {
 
-/// \brief The instructions that CpuEvaluator, OmpEvaluator and TbbEvaluator use, in ascending order.
+/// \brief The instructions that CpuEvaluator and ParallelEvaluator use, in ascending order.
 ///
 /// \code
 ///     OsdExt::SetSimdLevel(OsdExt::SimdLevel::Portable); // to compare

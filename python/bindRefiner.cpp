@@ -223,9 +223,9 @@ createRefiner(py::object const &faces, py::object const &numVertices, py::object
     sdcOptions.SetCreasingMethod(
         TakeEnum<OpenSubdiv::Sdc::Options::CreasingMethod>(creasingMethod, "creasing_method"));
     TopologyRefinerFactory::Options options;
-    options.schemeOptions.faceMask = TakeEnum<FaceMask>(faceMask, "face_mask");
-    options.schemeOptions.schemeType = TakeEnum<SchemeType>(schemeType, "scheme_type");
-    options.schemeOptions.firstStep = TakeEnum<FirstStep>(firstStep, "first_step");
+    options.hexSchemeOptions.faceMask = TakeEnum<FaceMask>(faceMask, "face_mask");
+    options.hexSchemeOptions.schemeType = TakeEnum<SchemeType>(schemeType, "scheme_type");
+    options.hexSchemeOptions.firstStep = TakeEnum<FirstStep>(firstStep, "first_step");
 
     BaseMesh mesh;
     if (faceOffsets.is_none()) {
@@ -322,6 +322,10 @@ void BindRefiner(py::module_ &module) {
         "    num_fvar_values: of each channel; None: as many as it needs, within the same bounds\n"
         "    is_left_handed: whether the faces run clockwise\n"
         "    vtx_boundary_interpolation: a VtxBoundaryInterpolation, or its name; so the others\n\n"
+        "The defaults are the paper's, as in C++ and hexrefine, so that results are its own.\n"
+        "Renderers want face_mask='smooth', vtx_boundary_interpolation='edge_and_corner' and, for\n"
+        "triangles, first_step='truncate', as hexrefine --like renderer; hexview and the Blender\n"
+        "add-on begin with 'smooth'.\n\n"
         "Integers may have any type and are copied.  Raises StatusError for a mesh that cannot be\n"
         "refined; its code, component and index say why.  Warns with StatusWarning.\n\n"
         "Threads may share a refiner.  While arrays show its levels, refining again raises\n"

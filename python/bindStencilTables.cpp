@@ -6,9 +6,8 @@
 #include "refiner.h"
 #include "stencilTable.h"
 
-#include "far_ext/limitStencilTableFactory.h"
 #include "far_ext/stencilTableFactory.h"
-#include "osd_ext/compactStencilTable.h"
+#include "osd_ext/stencilEvaluator.h"
 
 #include <optional>
 
@@ -175,7 +174,9 @@ LimitStencilTable createLimitTable(Refiner const &refiner, int level, bool gener
                 return;
             }
             made.table = StencilTable::Pointer<REAL>(table);
-            int const sourceLevel = factorizeIntermediateLevels ? 0 : level;
+            int const sourceLevel = factorizeIntermediateLevels ? 0
+                                    : level == -1               ? topology.GetMaxLevel()
+                                                                : level;
             made.numSources = topology.GetLevel(sourceLevel).GetNumVertices();
             made.hasDerivatives = generate1stDerivatives;
         });
@@ -373,14 +374,14 @@ void bindTable(py::module_ &module) {
 void bindLimitTable(py::module_ &module) {
     py::class_<LimitStencilTable, StencilTable>(
         module, "LimitStencilTable",
-        "LimitStencilTable(refiner, level=0, *, generate_vertices=True,\n"
+        "LimitStencilTable(refiner, level=-1, *, generate_vertices=True,\n"
         "                  generate_further_sides=False, generate_face_centers=False,\n"
         "                  generate_1st_derivatives=True, factorize_intermediate_levels=True,\n"
         "                  dtype='float32')\n\n"
         "Points of the limit surface and its first derivatives there, in terms of control\n"
         "vertices, or of the vertices of the level.\n\n"
         "Args:\n"
-        "    level: whose vertices and faces are meant, with full topology\n"
+        "    level: whose vertices and faces are meant, with full topology; -1: the last\n"
         "    generate_vertices: whether each vertex has a point\n"
         "    generate_further_sides: whether the further sides of vertices have, as LimitSides\n"
         "        numbers them; after the vertices\n"
@@ -390,7 +391,7 @@ void bindLimitTable(py::module_ &module) {
         "        level: evaluators apply the table to refined values\n"
         "    dtype: of the weights, float32 or float64; evaluators take float32\n\n"
         "Raises StatusError.")
-        .def(py::init(&createLimitTable), py::arg("refiner"), py::arg("level") = 0, py::kw_only(),
+        .def(py::init(&createLimitTable), py::arg("refiner"), py::arg("level") = -1, py::kw_only(),
              py::arg("generate_vertices") = true, py::arg("generate_further_sides") = false,
              py::arg("generate_face_centers") = false, py::arg("generate_1st_derivatives") = true,
              py::arg("factorize_intermediate_levels") = true, py::arg("dtype") = "float32")

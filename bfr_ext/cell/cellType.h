@@ -26,7 +26,7 @@ struct RingItem;
 /// The inputs of a cell's surface besides its patch.
 struct CellRules {
     Sdc::Options sdcOptions;
-    FarExt::HexSchemeOptions schemeOptions; ///< those of the steps to the limit
+    FarExt::HexSchemeOptions hexSchemeOptions; ///< those of the steps to the limit
     FarExt::Interpolation interpolation = FarExt::Interpolation::Vertex;
 };
 
@@ -73,13 +73,13 @@ public:
     static constexpr std::size_t kMaxLatticeFaceSize = 6;
     /// Whether the surface has bounded curvature where the lattice is regular.
     bool HasBoundedCurvature() const {
-        return _rules.schemeOptions.faceMask != FarExt::FaceMask::Average &&
+        return _rules.hexSchemeOptions.faceMask != FarExt::FaceMask::Average &&
                _rules.interpolation == FarExt::Interpolation::Vertex;
     }
 
     /// Whether it is continuous there.
     bool HasContinuousCurvature() const {
-        return _rules.schemeOptions.faceMask == FarExt::FaceMask::Smooth &&
+        return _rules.hexSchemeOptions.faceMask == FarExt::FaceMask::Smooth &&
                _rules.interpolation == FarExt::Interpolation::Vertex;
     }
 
@@ -190,7 +190,7 @@ public:
         std::unique_ptr<FarExt::internal::LimitMaskFinder> &finder = _masks[getKey(rules)];
         if (!finder || ++_numMaskUses % kMaxUses == 0) {
             finder = std::make_unique<FarExt::internal::LimitMaskFinder>(rules.sdcOptions,
-                                                                         rules.schemeOptions);
+                                                                         rules.hexSchemeOptions);
         }
         return function(*finder);
     }

@@ -89,7 +89,7 @@ private:
             std::vector<double> weights;
             CellRules const &ofCells = _masks.GetRules();
             FarExt::internal::UseNextMasks(
-                _patch, ofCells.sdcOptions, ofCells.schemeOptions, ofCells.interpolation,
+                _patch, ofCells.sdcOptions, ofCells.hexSchemeOptions, ofCells.interpolation,
                 [&](Refinement const &refinement, RefinementRules const &rules) {
                     weights = make(refinement, rules);
                 });

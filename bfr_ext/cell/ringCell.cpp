@@ -27,7 +27,7 @@ std::vector<int> getCorners(int numCorners) {
 }
 
 CellRefinement refine(CellPatch const &cell, CellRules const &rules) {
-    return RefineCell(cell, rules.sdcOptions, rules.schemeOptions, rules.interpolation);
+    return RefineCell(cell, rules.sdcOptions, rules.hexSchemeOptions, rules.interpolation);
 }
 
 // The vertices of the level that a step makes, by row of it.

@@ -154,7 +154,7 @@ private:
         }
         int const first = int(_scratch.weights.size());
         _scratch.weights.resize(_scratch.weights.size() + std::size_t(size));
-        FarExt::ComputeFaceVertexMask(_rules.schemeOptions.faceMask, _rules.interpolation, size,
+        FarExt::ComputeFaceVertexMask(_rules.hexSchemeOptions.faceMask, _rules.interpolation, size,
                                       &_scratch.weights[std::size_t(first)]);
         _scratch.masks.emplace_back(size, first);
         return first;

@@ -2,7 +2,7 @@
 #ifndef OPENSUBDIVHEX_FAR_EXT_PATCH_PATCH_CONSTANTS_H
 #define OPENSUBDIVHEX_FAR_EXT_PATCH_PATCH_CONSTANTS_H
 
-#include "far_ext/mask.h"
+#include "far_ext/rules/mask.h"
 
 #include <array>
 #include <cstddef>

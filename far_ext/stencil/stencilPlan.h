@@ -3,7 +3,7 @@
 #define OPENSUBDIVHEX_FAR_EXT_STENCIL_STENCIL_PLAN_H
 
 #include "far_ext/hexSchemeOptions.h"
-#include "far_ext/mask.h"
+#include "far_ext/rules/mask.h"
 #include "far_ext/vtr/hierarchy.h"
 
 #include <vector>
@@ -35,7 +35,7 @@ struct StencilPlan {
     bool HasParentStencils(int level) const { return factorize && level > firstBuilt; }
 
     Hierarchy const &hierarchy;
-    HexSchemeOptions schemeOptions;
+    HexSchemeOptions hexSchemeOptions;
     int channel = -1; ///< face-varying channel, or -1
     Interpolation interpolation = Interpolation::Vertex;
     bool factorize = true;

@@ -6,7 +6,7 @@
 #include "kept.h"
 
 #include "far_ext/indexing.h"
-#include "far_ext/mask.h"
+#include "far_ext/rules/mask.h"
 
 #include <opensubdiv/sdc/crease.h>
 #include <opensubdiv/vtr/types.h>

@@ -4,7 +4,7 @@
 
 #include "levelSizes.h"
 
-#include "far_ext/mask.h"
+#include "far_ext/rules/mask.h"
 
 #include <opensubdiv/sdc/options.h>
 

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "far_ext/executor.h"
 
-#include "far_ext/threads.h"
-
 #include <algorithm>
 #include <atomic>
 #include <chrono>

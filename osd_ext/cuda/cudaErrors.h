@@ -3,6 +3,7 @@
 #define OPENSUBDIVHEX_OSD_EXT_CUDA_CUDA_ERRORS_H
 
 #include "far_ext/status.h"
+#include "far_ext/vtr/report.h"
 
 #include <cuda_runtime_api.h>
 

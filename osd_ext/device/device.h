@@ -4,7 +4,7 @@
 
 #include "deviceKernels.h"
 
-#include "osd_ext/deviceRefinementEvaluator.h"
+#include "osd_ext/refinementEvaluator.h"
 
 #include <cstdint>
 #include <functional>

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "deviceEvaluator.h"
 
+#include "far_ext/stencil/interpolationMode.h"
 #include "far_ext/vtr/hierarchy.h"
+#include "far_ext/vtr/report.h"
 #include "osd_ext/refinement/evaluationChecks.h"
 
 #include <algorithm>

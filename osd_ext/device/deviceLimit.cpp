@@ -3,6 +3,7 @@
 
 #include "far_ext/limit/limitOrigins.h"
 #include "far_ext/vtr/parallel.h"
+#include "far_ext/vtr/report.h"
 #include "osd_ext/refinement/latticeWeights.h"
 #include "osd_ext/refinement/limitKernel.h"
 #include "osd_ext/refinement/limitRowWeights.h"

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "deviceRefinement.h"
 
+#include "far_ext/vtr/report.h"
 #include "osd_ext/refinement/preparedRefinement.h"
 
 #include "far_ext/vtr/parallel.h"

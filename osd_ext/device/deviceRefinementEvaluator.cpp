@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "osd_ext/deviceRefinementEvaluator.h"
+#include "far_ext/vtr/report.h"
+#include "osd_ext/refinementEvaluator.h"
 
 #include "deviceEvaluator.h"
 

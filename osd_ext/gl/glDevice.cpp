@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "glDevice.h"
 
+#include "far_ext/vtr/report.h"
 #include "osd_ext/gl/kernelText.h"
 
 #include <algorithm>

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "hostEvaluator.h"
 
+#include "far_ext/vtr/report.h"
+
 #include <cstring>
 #include <limits>
 #include <string>

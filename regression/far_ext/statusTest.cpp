@@ -305,7 +305,7 @@ TEST_F(StatusTest, OptionsOutsideOfTheirEnumerationsAreNamed) {
     auto const expectNamed = [&](HexSchemeOptions scheme, Sdc::Options sdcOptions,
                                  std::string const &name) {
         TopologyRefinerFactory::Options options;
-        options.schemeOptions = scheme;
+        options.hexSchemeOptions = scheme;
         CallStatus status;
         EXPECT_FALSE(
             TopologyRefinerFactory::Create(descriptor.Get(), sdcOptions, options, &status));

@@ -46,11 +46,14 @@ std::unique_ptr<PlySink<REAL>> PlySink<REAL>::Create(PatchNumbering const &numbe
                                                      CallStatus *status) {
     CallStatus result;
     if (numbering.GetNumPoints() > std::numeric_limits<std::int32_t>::max()) {
-        result = FarExt::internal::Failure(
-            StatusCode::TooLarge,
-            "a PLY file cannot number " + std::to_string(numbering.GetNumPoints()) + " points");
+        result = CallStatus(StatusCode::TooLarge, FarExt::ComponentType::NoComponent, 0,
+                            "a PLY file cannot number " + std::to_string(numbering.GetNumPoints()) +
+                                " points");
     }
-    if (!FarExt::internal::Report(result, status)) {
+    if (status) {
+        *status = result;
+    }
+    if (!result.IsOk()) {
         return nullptr;
     }
     return std::unique_ptr<PlySink>(new PlySink(numbering, std::move(write)));

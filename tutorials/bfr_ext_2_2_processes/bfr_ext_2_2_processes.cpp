@@ -12,7 +12,7 @@
 //
 //     Usage: mpirun -n RANKS bfr_ext_2_2_processes MESH.ply LEVEL
 //
-#include "far_ext/threads.h"
+#include "far_ext/executor.h"
 #include "far_ext/topologyRefinerFactory.h"
 #include "tools/mesh/shapes.h"
 #include "tools/mesh/topologyDescriptor.h"

@@ -1,34 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#ifndef OPENSUBDIVHEX_FAR_EXT_MASK_H
-#define OPENSUBDIVHEX_FAR_EXT_MASK_H
+#ifndef OPENSUBDIVHEX_FAR_EXT_RULES_MASK_H
+#define OPENSUBDIVHEX_FAR_EXT_RULES_MASK_H
 
-#include "export.h"
+#include "far_ext/hexSchemeOptions.h"
 
 #include <cstdint>
 
 namespace OpenSubdivHex::FarExt {
-
-/// \brief The circulant mask that makes a face's new points (F-vertices) from its vertices.
-///
-/// With theta_j = 2 pi j / n, the weight of the vertex j places around a face of n sides is
-///
-/// | mask    | w_0                      | w_j                                                   |
-/// |---------|--------------------------|-------------------------------------------------------|
-/// | Average | 1/2 + 1/(4n)             | 1/(4n), plus 1/8 for the two neighbours               |
-/// | Cosine  | (n + 5)/(4n)             | (3 + 2 cos theta_j)/(4n)                              |
-/// | Smooth  | 1/8 + 15/(8n), if n >= 5 | (7/8 + 3/4 cos theta_j + 1/4 cos 2 theta_j)/n, n >= 5 |
-///
-/// Average is (vertex + its two edge midpoints + centroid)/4, the paper's stage 1 (Ghaleb and
-/// Abd El-Latif 2005, section 3).  Cosine is Doo and Sabin's of 1978.  Smooth has eigenvalues
-/// 1, 1/2, 1/2, 1/4, 1/4, 1/8 ...; for n < 5 it is Cosine.
-///
-/// Smooth has masks of its own besides where hexagons meet what is not of the hexagonal lattice, and
-/// in quads of the first levels: see ComputeIrregularVertexMask() and ComputeQuadMask().
-enum class FaceMask {
-    Average, ///< the paper's: tangent planes, unbounded curvature
-    Cosine,  ///< Doo and Sabin's: bounded curvature at vertices with three faces
-    Smooth   ///< this project's: bounded curvature at nearly all vertices; for renderers
-};
 
 /// \brief The kind of data that is interpolated: Far's vertex, varying and face-varying primvars.
 enum class Interpolation {

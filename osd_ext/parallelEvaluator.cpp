@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "ompEvaluator.h"
+#include "cpuEvaluator.h"
 
 #include "far_ext/executor.h"
-#include "far_ext/threads.h"
 #include "osd_ext/stencil/stencilKernel.h"
 
 #include <algorithm>
@@ -51,9 +50,9 @@ void evaluate(internal::StencilTask const &task, int begin, int end) {
 
 } // namespace
 
-bool OmpEvaluator::run(float const *src, Osd::BufferDescriptor const &srcDesc,
-                       internal::StencilOutput const *outputs, int numOutputs,
-                       internal::StencilRows const &rows, int start, int end) {
+bool ParallelEvaluator::run(float const *src, Osd::BufferDescriptor const &srcDesc,
+                            StencilOutput const *outputs, int numOutputs, StencilRows const &rows,
+                            int start, int end) {
     internal::StencilTask task;
     if (!internal::MakeStencilTask(src, srcDesc, outputs, numOutputs, rows, start, end, &task)) {
         return false;
@@ -64,12 +63,12 @@ bool OmpEvaluator::run(float const *src, Osd::BufferDescriptor const &srcDesc,
     return true;
 }
 
-void OmpEvaluator::runPatches(internal::PatchTask const &task, int numPlaces) {
+void ParallelEvaluator::runPatches(PatchTask const &task, int numPlaces) {
     constexpr int kBatch = 1024; // some tens of microseconds
     int const numBatches = numPlaces / kBatch + (numPlaces % kBatch != 0);
     auto const evaluateBatch = [&](int batch) {
         int const begin = batch * kBatch;
-        internal::EvaluatePatches(task, begin, begin + std::min(numPlaces - begin, kBatch));
+        evaluatePatches(task, begin, begin + std::min(numPlaces - begin, kBatch));
     };
     FarExt::ParallelFor(numBatches, std::cref(evaluateBatch));
 }
