@@ -25,7 +25,7 @@ struct MeshMeasures;
 /// as those that are made without.
 ///
 /// **Memory** is what Options::SetMaxMemory() says, and three doubles for each vertex of the mesh.  Each
-/// cell that a view asked for takes about 80 bytes; for culling, 80 more.  What has no room is found anew by
+/// cell that a view asked for takes about 64 bytes; for culling, 72 more.  What has no room is found anew by
 /// each view.  Besides there are the tessellations of the last PatchStream of a forest, as far as that keeps
 /// them, for those of the next forest.
 ///

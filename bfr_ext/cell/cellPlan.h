@@ -85,10 +85,10 @@ public:
         std::vector<CornerPlace> corners;
     };
     /// What is to be evaluated.
-    enum class Use { Points, Derivatives };
+    enum class Use { Points, AllPoints, Derivatives };
 
     /// \param level        that of the places, at most
-    /// \param places       of points, those on the border of the face are made apart
+    /// \param places       with Use::Points, those on the border of the face are made apart
     /// \param isInLattice  whether many faces are of the type of the base face
     CellPlan(int faceSize, int level, std::vector<LeafPlaces::Place> const &places, Use use,
              bool isInLattice);
