@@ -153,8 +153,8 @@ namespace {
 
 /// \brief Refines one face.
 ///
-/// Cells are measured together with their children, where something is asked of them that is not known yet; whose
-/// children these are have been measured before, or are expected to be flat.
+/// Cells are measured together with their children where these are refined, from the base face on; the children of these
+/// children where they are not expected to be flat.
 class TreeMaker {
 public:
     /// \param getBase   is called where something is not known
@@ -188,33 +188,34 @@ private:
     };
 
     void visit(Node &node, int treeCell, int previousCell) {
-        bool const wasRefined = previousCell >= 0 && _previous->IsRefined(previousCell);
-        double const fraction = wasRefined ? _options.GetHysteresis() : 1;
-        CellVisibility found = CellVisibility::Visible;
-        bool isToRefine = false;
-        if (!isExpectedToBeFlat(node, fraction)) {
-            bool const isLast = _tree.GetLevel(treeCell) >= _options.GetMaxLevel();
-            if (_options.IsCulling()) {
-                found = find(node);
-            }
-            isToRefine = found == CellVisibility::Visible && !isLast && isTooLarge(node, fraction);
-        }
+        CellVisibility const found = _options.IsCulling() ? find(node) : CellVisibility::Visible;
         if (_visibility) {
             _visibility->resize(std::size_t(_tree.GetNumCells()));
             (*_visibility)[std::size_t(treeCell)] = found;
         }
-        if (!isToRefine) {
+        auto const getFraction = [&](int cell) {
+            return cell >= 0 && _previous->IsRefined(cell) ? _options.GetHysteresis() : 1;
+        };
+        if (found != CellVisibility::Visible ||
+            _tree.GetLevel(treeCell) >= _options.GetMaxLevel() ||
+            !isTooLarge(node, getFraction(previousCell))) {
             return;
         }
+        bool const wasRefined = previousCell >= 0 && _previous->IsRefined(previousCell);
+        int const firstPrevious = wasRefined ? _previous->GetFirstChild(previousCell) : -1;
         int const first = _tree.Refine(treeCell);
         int const numChildren = getNumChildren(node);
-        int const firstMeasures = findChildren(node);
         for (int i = 0; i < numChildren; ++i) {
+            int const previousChild = wasRefined ? firstPrevious + i : -1;
+            if (!node.isMeasuredFirst &&
+                areChildrenExpectedToBeFlat(node, getFraction(previousChild))) {
+                continue;
+            }
             Node child = {&node, i, node.isWhole && i == 0, !node.isMeasuredFirst,
-                          std::size_t(firstMeasures + i)};
+                          std::size_t(findChildren(node) + i)};
             bool const areMade = node.cell != kNotMade && _cells.HasChildren(node.cell);
             std::size_t const numCells = _cells.GetSize();
-            visit(child, first + i, wasRefined ? _previous->GetFirstChild(previousCell) + i : -1);
+            visit(child, first + i, previousChild);
             if (areMade) {
                 _cells.Drop(numCells); // what was made within the child
             }
@@ -315,11 +316,10 @@ private:
                                                                  : CellVisibility::Visible;
     }
 
-    // Whether a cell need not be measured.
-    bool isExpectedToBeFlat(Node &node, double fraction) {
-        return node.isMeasuredFirst && node.parent && !(_options.GetEdgeLength() > 0) &&
-               getMeasures(*node.parent).childThickness * findPixels(*node.parent) <=
-                   fraction * _options.GetFlatness();
+    // Whether children need not be measured, which are with their own.
+    bool areChildrenExpectedToBeFlat(Node &node, double fraction) {
+        return !(_options.GetEdgeLength() > 0) &&
+               measure(node).childThickness * findPixels(node) <= fraction * _options.GetFlatness();
     }
 
     bool isTooLarge(Node &node, double fraction) {

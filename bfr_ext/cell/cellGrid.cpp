@@ -15,7 +15,7 @@ constexpr int kMaxPointsOfFace = 512;
 // What lies between samples: of a quadratic surface up to a fifteenth of the range of heights, and of children, which
 // have fewer samples, up to a third.
 constexpr double kFactor = 1.125;
-constexpr double kFactorOfChildren = 1.4;
+constexpr double kFactorOfChildren = 1.25;
 // A quarter of the thickness is what the same half of an F-face has where the surface is smooth: with
 // kFactorOfChildren, a little more.
 constexpr double kLeastOfWhole = 0.3;
