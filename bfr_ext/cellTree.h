@@ -8,13 +8,18 @@
 
 namespace OpenSubdivHex::BfrExt {
 
-/// \brief How far the parts of a base face are refined: a tree of cells, any of which may be refined.
+/// \brief Says which parts of a base face are refined: a tree of cells.
 ///
-/// The *cell* of level 0 is the base face itself.  A refinement step makes of it its F-face, which is
-/// the same kind of cell, and on its side of each edge one half of a hexagon.  Of such a *half cell*,
-/// which has a long edge and three others, it makes the same half of the hexagon's F-face and half
-/// cells at the three edges.  What the cells that are not refined any further cover is the base face,
-/// without gaps and overlaps: any tree is a tessellation (LevelTessellation), and needs no balance.
+/// \code
+///     BfrExt::CellTree tree(4);                  // of a quad
+///     int const firstChild = tree.Refine(0);     // its F-face; then a half cell at each edge
+///     tree.Refine(firstChild + 1);               // the half cell at edge 0
+/// \endcode
+///
+/// The *cell* of level 0 is the base face.  Refining a whole cell makes its F-face, which is a whole cell, and half a
+/// hexagon at each edge.  Refining such a *half cell*, which has a long edge and three others, makes the same half of the
+/// hexagon's F-face, and half cells at the three edges.  The cells that are not refined cover the base face without gaps
+/// and overlaps: any tree is a tessellation (LevelTessellation), and needs no balance.
 ///
 /// Corners of half cells are counter-clockwise from the start of the long edge, which is side 0.
 ///
@@ -43,7 +48,7 @@ public:
     int GetFaceSize() const { return _faceSize; }
     /// All cells, with those that are refined.
     int GetNumCells() const { return int(_cells.size()); }
-    /// Those that are not refined.
+    /// Cells that are not refined.
     int GetNumLeaves() const { return _numLeaves; }
     /// The highest level that a cell has.
     int GetMaxLevel() const;
@@ -72,7 +77,7 @@ public:
 
     /// \brief The polyline that the cells make of an edge of the face, in the direction of the face.
     ///
-    /// Of a neighbour the other direction is the same edge's: Polyline::GetReversed().
+    /// A neighbour has the edge in the other direction: Polyline::GetReversed().
     Polyline GetEdgePolyline(int edge) const;
 
 private:

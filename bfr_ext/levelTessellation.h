@@ -19,20 +19,23 @@ class FaceSections;
 struct PatchPlan;
 } // namespace internal
 
-/// \brief A base face cut into facets, as Bfr::Tessellation: places, at which a Surface is evaluated, and the facets
-/// between them.
+/// \brief A base face cut into facets by levels of refinement, as Bfr::Tessellation cuts it by rates: (u, v) at which a
+/// Surface is evaluated, and the facets between them.
 ///
-/// In place of Bfr's rates there are levels of refinement; a Surface takes a Bfr::Tessellation, with rates, too.
-/// The places are those of vertices, and the facets are cells: the F-face and the halves of hexagons that the
-/// refined levels have in the face.
-/// At level d an edge is a polyline of 1, 1, 3, 5, 11, 21, 43 ... segments (d = 0, 1, 2 ...), each of
-/// which has the points of the one before, too.
+/// \code
+///     BfrExt::LevelTessellation const tessellation(surface.GetParameterization(), 3); // level 3
+///     surface.Evaluate(tessellation, control, 3, points, 3);
+///     tessellation.GetFacets(facets); // triangles
+/// \endcode
 ///
-/// Cells are refined to the level of the inside, but for those whose refinement would give an edge of
-/// the face more points than its level has; or a CellTree says for each cell whether it is refined.
-/// Where a cell meets smaller ones, or an edge of a finer level, it has their points in its own sides.
-/// So neighbours fit whatever their levels and trees are, as long as both take the same level, or
-/// Polyline, for the edge that they share: there are no gaps, and no more facets than are asked for.
+/// The points are vertices of refined levels, the facets cells: the F-face and the halves of hexagons that these levels
+/// have in the face.  At level d = 0, 1, 2 ... an edge has 1, 1, 3, 5, 11, 21, 43 ... segments; each level has the points of
+/// the one before.
+///
+/// Cells are refined to the level of the inside, except those whose refinement would give an edge of the face more points
+/// than its level has; or a CellTree says which cells are refined.  A cell beside smaller ones, or beside an edge of a finer
+/// level, has their points in its own sides.  So neighbours that take the same level, or Polyline, for their edge fit
+/// without gaps, whatever their other levels and trees.
 ///
 /// A PatchStream cuts faces that are too large for its memory into *sections*, whose tessellations are
 /// parts of that of the face: with the same places and facets, but that hexagons which two sections have
@@ -58,7 +61,7 @@ public:
             _facetSize = size;
             return *this;
         }
-        /// That size.
+        /// The size that was set.
         int GetFacetSize() const { return _facetSize; }
         /// Sets how far it is from one facet to the next, in indices; 0: the size of facets.  Of no
         /// matter for polygons.
@@ -66,14 +69,14 @@ public:
             _facetStride = stride;
             return *this;
         }
-        /// That distance.
+        /// The distance that was set.
         int GetFacetStride() const { return _facetStride; }
         /// Sets how far it is from one pair of coordinates to the next; 0: 2.
         Options &SetCoordStride(int stride) {
             _coordStride = stride;
             return *this;
         }
-        /// That distance.
+        /// The distance that was set.
         int GetCoordStride() const { return _coordStride; }
 
     private:
@@ -82,7 +85,7 @@ public:
         int _coordStride;
     };
 
-    /// \brief The same level everywhere, 0 ... kLastLevel.
+    /// \brief One level everywhere, 0 ... kLastLevel.
     ///
     /// The tessellation is invalid for other levels, for an invalid parameterization, for a facet size
     /// that is none of the three, for strides that are less than what they are between, and for so many
@@ -131,8 +134,8 @@ public:
     int GetNumEdges() const { return (std::max)(int(_firstEdgeCoords.size()) - 1, 0); }
 
     /// @name Coordinates
-    /// Those of the boundary come first, from vertex 0 on around the face, or the section: each vertex and
-    /// then the inner points of the edge behind it.
+    /// Points on the boundary come first, from vertex 0 on around the face, or the section: each vertex, then the inner
+    /// points of the edge behind it.
     /// @{
 
     /// All places.
@@ -233,7 +236,7 @@ private:
         int count;
         int place;
     };
-    // What the tessellation of a section has besides.
+    // Members of the tessellation of a section.
     struct Section {
         int number;
         int count; // of the face
@@ -253,7 +256,7 @@ private:
         int corner;
         int place;
     };
-    // What the tessellation of a tree has besides.
+    // Members of the tessellation of a tree.
     struct Tree {
         CellTree cells;
         std::vector<Polyline> edges;
@@ -261,13 +264,13 @@ private:
         std::vector<CellCorner> corners; // of all places that are corners, ascending by cell
     };
 
-    // That of a section of a face.
+    // The tessellation of a section of a face.
     LevelTessellation(internal::FaceSections const &sections, int section, Options const &options);
 
     // Which cells the places inside lie in, made when it is first asked for; of levels, and of trees that
     // are not large.
     struct LazyCellPlans;
-    // Those of all places in a face with sub-faces, made when derivatives are first asked for.
+    // (u, v) of all points in a face with sub-faces, found when derivatives are first asked for.
     struct LazyBfrPlaces;
     std::vector<internal::BfrPlace> const &getBfrPlaces() const;
     internal::CellPlan const &getCellPlan(bool isInLattice, bool isOfDerivatives = false) const;
@@ -275,7 +278,7 @@ private:
     // The places that are corners of the cells that CellStencil has their derivatives from, which with
     // FaceMask::Average are others in other cells; ascending by cell.
     std::vector<CellCorner> findCornersOfDerivatives() const;
-    // That of which an edge has the polyline; -1: none.
+    // The level of the edge's polyline; -1: none.
     int getEdgeLevel(std::size_t edge) const {
         return _tree ? _tree->edgeLevels[edge] : _levels[edge];
     }

@@ -18,7 +18,7 @@ class OPENSUBDIVHEX_API Parameterization : public OpenSubdiv::Bfr::Parameterizat
 public:
     /// An invalid one.
     Parameterization() = default;
-    /// That of a face of \p faceSize vertices; invalid for fewer than 3, and for more than Bfr allows.
+    /// The parameterization of a face of \p faceSize vertices; invalid for fewer than 3, and for more than Bfr allows.
     explicit Parameterization(int faceSize);
 };
 

@@ -9,15 +9,17 @@
 
 namespace OpenSubdivHex::BfrExt {
 
-/// \brief What an edge of a base face has become where the cells beside it are refined: its inner
-/// points, by the places that they have on the edge.
+/// \brief The segments of an edge of a base face between refined cells: the positions of its inner points.
 ///
-/// A polyline begins as one segment.  Refinement cuts segments at a quarter and at three quarters of
-/// their length, and these again: so polylines are trees, and of any two of the same edge there is one
-/// that has the points of both and no others.  Two faces that share an edge fit together, however their
-/// own cells are refined, as soon as both take that polyline.
+/// A polyline begins as one segment.  Refinement cuts a segment at a quarter and at three quarters of its length, then
+/// those segments again: a polyline is a tree.  Merge() makes the polyline that has the points of two and no others.  Two
+/// faces that take the merged polyline of their edge fit, however their own cells are refined.
 ///
-/// Places are all that there is to know of a polyline, and they may be sent from one process to another.
+/// Positions describe a polyline completely, and may be sent to another process.
+///
+/// \code
+///     polyline.Merge(neighbours.GetReversed()); // the points of both faces
+/// \endcode
 ///
 /// Objects are values: several threads may read one.  std::bad_alloc passes through.
 class OPENSUBDIVHEX_API Polyline {
@@ -31,10 +33,10 @@ public:
 
     /// One segment.
     Polyline() = default;
-    /// That of an edge with cells of level 0 ... kLastLevel all along it: 1, 1, 3, 5, 11, 21, 43 ...
+    /// The polyline of an edge with cells of level 0 ... kLastLevel all along it: 1, 1, 3, 5, 11, 21, 43 ...
     /// segments.
     explicit Polyline(int level);
-    /// \brief That with the given places.
+    /// \brief The polyline with the given positions.
     ///
     /// \param places    ascending, without the ends
     /// \param polyline  is not changed if the places are not those of a polyline
@@ -52,7 +54,7 @@ public:
         return double(_places[std::size_t(point)]) / double(kLength);
     }
 
-    /// The same from the end of the edge to its start.
+    /// The polyline from the end of the edge to its start.
     Polyline GetReversed() const;
     /// Takes the points of another polyline of the same edge and direction, too.
     void Merge(Polyline const &other);

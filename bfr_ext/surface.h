@@ -39,7 +39,7 @@ public:
     bool IsInLattice() const;
     /// Whether something sharp is near.
     bool IsSharp() const;
-    /// That of a plain face that is not in a lattice, whose CellType need not be made; null of others.
+    /// The type of a plain face outside lattices, whose CellType need not be made; null for other faces.
     PlainFaceType const *GetPlain() const;
 
 private:
@@ -50,10 +50,18 @@ private:
 
 /// \brief The limit surface of a base face, as Bfr::Surface: a function of u and v.
 ///
-/// It depends on the *control points* of a face, which are vertices of its level (or values of a
-/// face-varying channel) around it: the faces at its vertices and at their neighbours have them.  All
-/// that is evaluated is a weighted sum of these, and the weights of points are not negative: the hull
-/// of the control points contains the surface.
+/// \code
+///     BfrExt::Surface<float> surface;
+///     if (factory->InitVertexSurface(face, &surface)) {
+///         std::vector<float> points(3 * surface.GetNumPatchPoints());
+///         surface.PreparePatchPoints(positions, 3, points.data(), 3); // once a frame
+///         surface.Evaluate(uv, points.data(), 3, p, du, dv);
+///     }
+/// \endcode
+///
+/// The surface depends on the *control points* of the face: the vertices of its level (or values of a face-varying channel)
+/// in the faces at its vertices and at their neighbours.  Every point is a weighted sum of control points, with weights
+/// that are not negative: the hull of the control points contains the surface.
 ///
 /// The scheme is no spline: its surface has no polynomials.  There are two ways to evaluate it.
 ///  - **A place, from patch points**, is that of a bicubic Gregory patch: the cells of level 3, or that of
@@ -86,8 +94,8 @@ private:
 ///    given, or those of patches, which are bilinear between their corners.
 ///
 /// **Second derivatives**, by u twice, by u and v, and by v twice, are from the same side.  Vertex data, and
-/// face-varying data that are refined like these, have them with FaceMask::Smooth: exactly at the places of
-/// vertices, elsewhere to half a hundredth of their size on average.
+/// face-varying data that are refined like these, have them with FaceMask::Smooth: exact at vertices, elsewhere within 0.5 %
+/// on average.
 ///  - There are none at base vertices that have not three faces, towards which they may grow, at the centres
 ///    of faces that are no hexagons, and on the lines of borders and creases.
 ///  - With FaceMask::Cosine they are bounded and have no limit, with FaceMask::Average they are unbounded, and
@@ -167,15 +175,15 @@ public:
     /// Writes the box of the control points, in which the surface lies.
     void BoundControlPoints(REAL const controlPoints[], PointDescriptor const &controlPointDesc,
                             REAL minExtent[], REAL maxExtent[]) const;
-    /// The same from the points of the mesh.
+    /// Overload that takes the points of the mesh.
     void BoundControlPointsFromMesh(REAL const meshPoints[], PointDescriptor const &meshPointDesc,
                                     REAL minExtent[], REAL maxExtent[]) const;
 
     /// @}
 
     /// @name Patch points
-    /// What places are evaluated from: the control points, and then the points of bicubic Gregory patches, 20 of
-    /// each.  They are made once for the points of a mesh, and serve any number of places.
+    /// The points that Evaluate() at (u, v) takes: the control points, then 20 points of each bicubic Gregory patch.  Make
+    /// them once for the points of a mesh; they serve any number of evaluations.
     /// @{
 
     /// Control points and points of patches.
@@ -201,10 +209,10 @@ public:
     /// \param patchPoints  those of PreparePatchPoints(), of as many numbers
     void Evaluate(REAL const uv[2], REAL const patchPoints[], PointDescriptor const &pointDesc,
                   REAL p[]) const;
-    /// The same with first derivatives.
+    /// Overload with first derivatives.
     void Evaluate(REAL const uv[2], REAL const patchPoints[], PointDescriptor const &pointDesc,
                   REAL p[], REAL du[], REAL dv[]) const;
-    /// The same with first and second derivatives.
+    /// Overload with first and second derivatives.
     void Evaluate(REAL const uv[2], REAL const patchPoints[], PointDescriptor const &pointDesc,
                   REAL p[], REAL du[], REAL dv[], REAL duu[], REAL duv[], REAL dvv[]) const;
 
@@ -214,9 +222,9 @@ public:
     /// Two faces that share an edge get the same points there, to the bit, if the edge has the same
     /// level, or Polyline, in both and their control points come from the same mesh: so facets of
     /// neighbours can be joined by comparing points.  Levels and polylines give a place the same point.
-    /// That holds for any threads, orders, trees and levels of the inside; not at non-manifold edges and
-    /// vertices, nor for face-varying values on the two sides of a seam; and last bits may differ on edges
-    /// and at vertices of the faces around a non-manifold vertex that has a closed fan of faces among others.
+    /// This holds for any threads, orders, trees and levels of the inside.  Exceptions: non-manifold edges and vertices;
+    /// face-varying values on the two sides of a seam; last bits on edges and at vertices of the faces around a
+    /// non-manifold vertex with a closed fan among others.
     ///
     /// The weights are found when a type of faces or of cells is first evaluated so, and kept in the
     /// cache.  Inside of trees of more than 128 cells the control points are refined cell by cell instead,
@@ -224,12 +232,11 @@ public:
     void Evaluate(LevelTessellation const &tessellation, REAL const controlPoints[],
                   PointDescriptor const &pointDesc, REAL p[],
                   PointDescriptor const &resultDesc) const;
-    /// The same with first derivatives.
+    /// Overload with first derivatives.
     void Evaluate(LevelTessellation const &tessellation, REAL const controlPoints[],
                   PointDescriptor const &pointDesc, REAL p[], REAL du[], REAL dv[],
                   PointDescriptor const &resultDesc) const;
-    /// The same with first and second derivatives, of which the second ones are found place by place: that
-    /// takes some ten microseconds each.
+    /// Overload with first and second derivatives.  Second derivatives take about ten microseconds a point.
     void Evaluate(LevelTessellation const &tessellation, REAL const controlPoints[],
                   PointDescriptor const &pointDesc, REAL p[], REAL du[], REAL dv[], REAL duu[],
                   REAL duv[], REAL dvv[], PointDescriptor const &resultDesc) const;
@@ -255,7 +262,7 @@ public:
     void Evaluate(OpenSubdiv::Bfr::Tessellation const &tessellation, REAL const controlPoints[],
                   PointDescriptor const &pointDesc, REAL p[],
                   PointDescriptor const &resultDesc) const;
-    /// The same with first derivatives.
+    /// Overload with first derivatives.
     void Evaluate(OpenSubdiv::Bfr::Tessellation const &tessellation, REAL const controlPoints[],
                   PointDescriptor const &pointDesc, REAL p[], REAL du[], REAL dv[],
                   PointDescriptor const &resultDesc) const;
@@ -263,15 +270,15 @@ public:
     /// Writes the weights of the control points that make the point at \p uv.
     /// \return  GetNumControlPoints()
     int EvaluateStencil(REAL const uv[2], REAL weights[]) const;
-    /// The same with those of the first derivatives.
+    /// Overload with weights of first derivatives.
     int EvaluateStencil(REAL const uv[2], REAL weights[], REAL duWeights[], REAL dvWeights[]) const;
-    /// The same with those of the second derivatives.
+    /// Overload with weights of first and second derivatives.
     int EvaluateStencil(REAL const uv[2], REAL weights[], REAL duWeights[], REAL dvWeights[],
                         REAL duuWeights[], REAL duvWeights[], REAL dvvWeights[]) const;
     /// Writes the weighted sum of control points.
     void ApplyStencil(REAL const stencil[], REAL const controlPoints[],
                       PointDescriptor const &controlPointDesc, REAL result[]) const;
-    /// The same from the points of the mesh.
+    /// Overload that takes the points of the mesh.
     void ApplyStencilFromMesh(REAL const stencil[], REAL const meshPoints[],
                               PointDescriptor const &meshPointDesc, REAL result[]) const;
     /// @}

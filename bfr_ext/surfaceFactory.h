@@ -26,9 +26,14 @@ class StreamTypes;
 
 /// \brief Makes the surfaces of base faces, as Bfr::RefinerSurfaceFactory.
 ///
-/// It takes level 0 of a refiner, which need not be refined and to which it refers: surfaces need no
-/// levels.  Sharpness, corners, boundaries, non-manifold parts and face-varying seams are as in
-/// refinement.
+/// \code
+///     auto factory = BfrExt::SurfaceFactory::Create(*refiner); // no refinement needed
+///     BfrExt::Surface<float> surface;
+///     factory->InitVertexSurface(face, &surface);
+/// \endcode
+///
+/// A factory takes level 0 of a refiner, and refers to it.  Sharpness, corners, boundaries, non-manifold parts and
+/// face-varying seams are as in refinement.
 ///
 /// **Behind a first step** (FarExt::FirstStep) level 1 takes the place of level 0: base faces, edges and
 /// vertices in BfrExt are then those of this *surface level*
@@ -37,13 +42,12 @@ class StreamTypes;
 /// its evaluators make the control points.  FarExt::TopologyLevel::GetFaceBaseFace() leads from faces of
 /// GetLevel() to those of level 0, with their materials.
 ///
-/// Holes have no surface; nor, with VTX_BOUNDARY_NONE, have faces at a boundary, where the border of every level
-/// lies elsewhere, and the few that FaceHasLimitSurface() names.
+/// No surface have holes, the few faces that FaceHasLimitSurface() names and, with VTX_BOUNDARY_NONE, faces at a boundary,
+/// which has no limit.
 ///
-/// When the first surface of a mesh, or of a channel, is made, the ways from vertex to vertex around its faces
-/// are found, 8 bytes a corner.  What the surface of a face is made of is kept when one is made the second
-/// time, so that making more is a look-up, as in the frames of an animation: some 200 bytes a face, as far as
-/// Options::SetMemoryOfFaces() allows.
+/// **Memory.** The first surface of a mesh, or of a channel, takes 8 bytes for each corner of the mesh.  When a face gets its
+/// second surface, about 200 bytes are kept for it, within Options::SetMemoryOfFaces(): further surfaces of the face, as in
+/// the frames of an animation, are a look-up.
 ///
 /// Any number of threads may call its functions at once.  std::bad_alloc passes through.
 class OPENSUBDIVHEX_API SurfaceFactory {
@@ -53,7 +57,7 @@ public:
     /// A face-varying channel.
     using FVarID = int;
 
-    /// \brief What all surfaces of a factory have in common, as in Bfr.
+    /// \brief Options of all surfaces of a factory, as in Bfr.
     class Options {
     public:
         /// Channel 0, and a cache of its own.
@@ -64,7 +68,7 @@ public:
             _defaultFVarID = id;
             return *this;
         }
-        /// That channel.
+        /// The channel that was set.
         FVarID GetDefaultFVarID() const { return _defaultFVarID; }
 
         /// Sets a cache to share, which must live as long as the factory; null: one of its own.
@@ -72,7 +76,7 @@ public:
             _externalCache = cache;
             return *this;
         }
-        /// That cache.
+        /// The cache that was set.
         SurfaceFactoryCache *GetExternalCache() const { return _externalCache; }
 
         /// Sets the level whose cells are the patches that places of surfaces are evaluated by, 2 to 6: each
@@ -81,7 +85,7 @@ public:
             _approxLevelSmooth = level;
             return *this;
         }
-        /// That level; by default 3.
+        /// The level that was set; by default 3.
         int GetApproxLevelSmooth() const { return _approxLevelSmooth; }
         /// Sets that of faces whose control points include a sharp or semi-sharp edge, a corner or a boundary.  Where
         /// it differs from the smooth one, faces of both kinds agree about their edge within the error of the
@@ -90,7 +94,7 @@ public:
             _approxLevelSharp = level;
             return *this;
         }
-        /// That level; by default 3.
+        /// The level that was set; by default 3.
         int GetApproxLevelSharp() const { return _approxLevelSharp; }
 
         /// Sets the memory, in bytes, for what surfaces are made of, which is kept as long as the factory and
@@ -99,7 +103,7 @@ public:
             _memoryOfFaces = memory;
             return *this;
         }
-        /// That memory; by default 64 mebibytes, enough for some 300,000 faces.
+        /// The memory that was set; by default 64 mebibytes, enough for about 300,000 faces.
         std::size_t GetMemoryOfFaces() const { return _memoryOfFaces; }
 
     private:
@@ -118,7 +122,7 @@ public:
     static std::unique_ptr<SurfaceFactory> Create(FarExt::TopologyRefiner const &refiner,
                                                   Options options,
                                                   FarExt::CallStatus *status = nullptr);
-    /// The same with the default options.
+    /// Overload with default options.
     static std::unique_ptr<SurfaceFactory> Create(FarExt::TopologyRefiner const &refiner,
                                                   FarExt::CallStatus *status = nullptr) {
         return Create(refiner, Options(), status);
@@ -171,7 +175,7 @@ public:
     template <typename REAL>
     bool InitFaceVaryingSurface(Index face, Surface<REAL> *surface, FVarID channel,
                                 FarExt::CallStatus *status = nullptr) const;
-    /// The same for the default channel.
+    /// Overload for the default channel.
     template <typename REAL>
     bool InitFaceVaryingSurface(Index face, Surface<REAL> *surface,
                                 FarExt::CallStatus *status = nullptr) const {
@@ -250,7 +254,7 @@ private:
     template <typename REAL>
     FarExt::CallStatus init(Index face, FarExt::Interpolation interpolation, int channel,
                             Surface<REAL> &surface) const;
-    // The same with what is kept.
+    // Overload with what is kept.
     template <typename REAL>
     FarExt::CallStatus initKept(Index face, FarExt::Interpolation interpolation, int channel,
                                 Surface<REAL> &surface) const;

@@ -13,11 +13,16 @@ namespace internal {
 class CellTypes;
 }
 
-/// \brief What surfaces of faces that look alike have in common, as Bfr::SurfaceFactoryCache.
+/// \brief Keeps the weights that surfaces of faces that look alike share, as Bfr::SurfaceFactoryCache.
 ///
-/// Faces whose neighbourhoods have the same topology and tags are of the same *type*, be they of one
-/// mesh or of several with any options, and the weights that make the surface of its control points
-/// are found once for a type.  Every SurfaceFactory has a cache of its own unless it is given one.
+/// Faces whose neighbourhoods have the same topology and tags have one *type*, in one mesh or in several, with any
+/// options.  The weights of a type are found once.  Every SurfaceFactory has a cache of its own unless it is given one:
+///
+/// \code
+///     BfrExt::SurfaceFactoryCache cache; // for several meshes
+///     BfrExt::SurfaceFactory::Options options;
+///     options.SetCache(&cache);
+/// \endcode
 ///
 /// Any number of threads and of factories may share a cache.  It grows by some hundred bytes with each type
 /// of faces that it meets.  When a surface of the type is first evaluated, or at once where a feature is

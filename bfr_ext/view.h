@@ -18,7 +18,7 @@ class ViewGeometry;
 struct FaceMeasures;
 } // namespace internal
 
-/// \brief A pinhole camera, as glTF and USD have it: what is in the picture, and how large.
+/// \brief A pinhole camera, as in glTF and USD.
 struct Camera {
     double eye[3] = {0, 0, 1};    ///< where it is
     double target[3] = {0, 0, 0}; ///< what is in the middle of the picture
@@ -30,14 +30,21 @@ struct Camera {
     int height = 720;        ///< pixels
 };
 
-/// What is known of a cell in a view.
+/// The decision of a view about a cell.
 enum class CellVisibility : unsigned char {
     Visible,    ///< or perhaps so
     Outside,    ///< of the picture, all of it
     BackFacing, ///< all of it
 };
 
-/// \brief How far base faces are refined to look smooth in a view: trees of cells.
+/// \brief Refines base faces only as far as a camera sees: makes trees of cells.
+///
+/// \code
+///     BfrExt::Camera camera;
+///     camera.eye[2] = 5;
+///     BfrExt::View const view(camera, BfrExt::View::Options().SetFlatness(0.5)); // half a pixel
+///     BfrExt::CellForest const forest = view.MakeForest(*factory, positions, 3);
+/// \endcode
 ///
 /// **Flatness.**  A cell is refined until its facets are closer to the surface than some pixels.  That is
 /// estimated: the surface is known at the corners of the cells one or two steps on, and the range of the heights of
@@ -73,7 +80,7 @@ public:
     /// A face of the base mesh.
     using Index = Far::Index;
 
-    /// \brief What is to be reached, and what is left out.
+    /// \brief How fine cells become, and which are left coarse.
     class Options {
     public:
         /// Flat to half a pixel, all faces, up to level 8.
@@ -85,21 +92,21 @@ public:
             _flatness = pixels;
             return *this;
         }
-        /// That number.
+        /// The number that was set.
         double GetFlatness() const { return _flatness; }
         /// Sets how many pixels long sides of cells may be; 0: any number.
         Options &SetEdgeLength(double pixels) {
             _edgeLength = pixels;
             return *this;
         }
-        /// That number.
+        /// The number that was set.
         double GetEdgeLength() const { return _edgeLength; }
         /// Sets the last level that is made, 0 ... CellTree::kLastLevel.
         Options &SetMaxLevel(int level) {
             _maxLevel = level;
             return *this;
         }
-        /// That level.
+        /// The level that was set.
         int GetMaxLevel() const { return _maxLevel; }
         /// Sets whether what is not seen is left coarse.
         Options &SetCulling(bool isCulling) {
@@ -114,7 +121,7 @@ public:
             _hysteresis = fraction;
             return *this;
         }
-        /// That fraction.
+        /// The fraction that was set.
         double GetHysteresis() const { return _hysteresis; }
 
     private:
@@ -125,7 +132,7 @@ public:
         double _hysteresis;
     };
 
-    /// \brief What a camera sees.
+    /// \brief The view of a camera.
     ///
     /// The view is invalid if eye and target are one place, or nothing is up, also where the squares of
     /// their distance or of what is up are beyond double precision; if a number is not finite, or an angle,
@@ -181,7 +188,7 @@ public:
     int FindLevels(Surface<REAL> const &surface, REAL const controlPoints[],
                    typename Surface<REAL>::PointDescriptor const &pointDesc, int levels[]) const;
 
-    /// \brief What was found of the faces of a mesh.
+    /// \brief Counts of faces and cells of a mesh.
     struct Counts {
         std::vector<long> cellsByLevel; ///< those that are not refined
         long outside = 0;               ///< of these
@@ -201,7 +208,7 @@ public:
     CellForest MakeForest(SurfaceFactory const &factory, REAL const meshPoints[],
                           typename Surface<REAL>::PointDescriptor const &pointDesc,
                           CellForest const *previous = nullptr, Counts *counts = nullptr) const;
-    /// \brief The same with what views have found before, and for the next ones.
+    /// \brief Overload that uses, and keeps for the next view, how flat cells are.
     ///
     /// \param bounds  of the mesh
     template <typename REAL>

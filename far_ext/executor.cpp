@@ -3,7 +3,6 @@
 
 #include "threads.h"
 #include "vtr/parallel.h"
-#include "vtr/threadPool.h"
 
 #include <algorithm>
 #include <atomic>
@@ -21,8 +20,6 @@ thread_local int chosenNumThreads = 0;           // 0: that of the executor
 } // namespace
 
 Executor::~Executor() = default;
-
-Executor &GetDefaultExecutor() { return internal::GetThreadPool(); }
 
 void SetExecutor(Executor *executor) { executorOfAll = executor; }
 

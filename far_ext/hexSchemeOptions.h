@@ -49,7 +49,16 @@ enum class StepType {
     Truncate   ///< FirstStep::Truncate
 };
 
-/// \brief What distinguishes one refinement from another.
+/// \brief Chooses scheme, face mask and first step of a refinement.
+///
+/// The defaults are the paper's.  Renderers want FaceMask::Smooth and, for meshes of triangles,
+/// FirstStep::Truncate:
+///
+/// \code
+///     FarExt::TopologyRefinerFactory::Options options;
+///     options.schemeOptions.faceMask = FarExt::FaceMask::Smooth;
+///     auto refiner = FarExt::TopologyRefinerFactory::Create(descriptor, sdcOptions, options);
+/// \endcode
 struct HexSchemeOptions {
     FaceMask faceMask = FaceMask::Average;         ///< of Hexagonal and DooSabin
     SchemeType schemeType = SchemeType::Hexagonal; ///< of all levels, but see firstStep

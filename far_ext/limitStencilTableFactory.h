@@ -21,12 +21,17 @@ struct LimitStencilTableTypes {
 /// \brief In single precision.
 template <>
 struct LimitStencilTableTypes<float> {
-    /// What the Osd evaluators take.
+    /// The type that Osd's evaluators take.
     using Table = Far::LimitStencilTable;
 };
 
-/// \brief The sides of the vertices of a level: at a vertex where two or more infinitely sharp
-/// edges meet, the surface has a tangent plane for each part of its faces that they bound.
+/// \brief Numbers the sides of the vertices of a level, each of which has a normal: at a vertex where two or more
+/// infinitely sharp edges meet, the surface has a tangent plane for each part of its faces that they bound.
+///
+/// \code
+///     FarExt::LimitSides const sides(level);
+///     int const normal = sides.FindSide(level, face, corner); // of a table with generateFurtherSides
+/// \endcode
 ///
 /// Where fewer meet, and at sharp boundaries without creases, a vertex has one side.  Sides are
 /// counted around the vertex, in the order of its faces and from the first sharp edge on.  Side 0
@@ -65,7 +70,7 @@ public:
     ///
     /// \param level  that of the constructor, or one for which IsOf() is true
     /// \param half   of a hexagon with an infinitely sharp diagonal, the half that is meant, as in
-    ///               kHexagonHalves; of no matter for other faces
+    ///               kHexagonHalves; ignored for other faces
     Index FindSide(TopologyLevel const &level, Index face, int local, int half = 0) const;
 
 private:
@@ -101,6 +106,15 @@ private:
 
 /// \brief Makes limit stencil tables of hexagonal refinements: points of the limit surface and its
 /// first derivatives there, as weighted sums of control vertices, for any Osd evaluator.
+///
+/// \code
+///     FarExt::TopologyRefiner::UniformOptions refineOptions(2);
+///     refineOptions.fullTopologyInLastLevel = true;
+///     refiner->RefineUniform(refineOptions);
+///     FarExt::LimitStencilTableFactory::Options options;
+///     options.level = 2;
+///     auto table = FarExt::LimitStencilTableFactory::Create(*refiner, options);
+/// \endcode
 ///
 /// The derivatives du and dv span the tangent plane, and du x dv points to the side from which the
 /// faces are counter-clockwise.  They are derivatives by coordinates u and v in which the edges of
@@ -141,7 +155,7 @@ private:
 template <typename REAL>
 class OPENSUBDIVHEX_API LimitStencilTableFactoryReal {
 public:
-    /// What is made: Far::LimitStencilTable, or Far::LimitStencilTableReal<double>.
+    /// Far::LimitStencilTable, or Far::LimitStencilTableReal<double>.
     using Table = typename LimitStencilTableTypes<REAL>::Table;
 
     /// \brief Which points, in this order: the vertices of the level, the further sides of

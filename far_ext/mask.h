@@ -30,7 +30,7 @@ enum class FaceMask {
     Smooth   ///< this project's: bounded curvature at nearly all vertices; for renderers
 };
 
-/// \brief What is interpolated: as Far's vertex, varying and face-varying primvars.
+/// \brief The kind of data that is interpolated: Far's vertex, varying and face-varying primvars.
 enum class Interpolation {
     Vertex, ///< the scheme's own masks
     Varying ///< linear: V' = V and P = (V + centroid)/2
@@ -119,7 +119,7 @@ OPENSUBDIVHEX_API VertexVertexMask ComputeVertexVertexMask(Interpolation interpo
 /// own around it.
 inline constexpr int kMinIrregularFaces = 4;
 
-/// \brief What all faces around an irregular vertex were when hexagonal steps began, which made them
+/// \brief The kind of all faces around an irregular vertex when hexagonal steps began, which made them
 /// hexagons; as far as it matters.
 enum class FacesAround : std::uint16_t {
     Others,    ///< anything else

@@ -54,7 +54,7 @@ private:
     std::vector<Channel> _channels;
 };
 
-/// \brief What the functions of a MeshRefinerFactory call, named as in Far::TopologyRefinerFactory.
+/// \brief The functions that a specialised MeshRefinerFactory calls, named as in Far::TopologyRefinerFactory.
 ///
 /// An index that is out of range, a count that is negative, a sharpness that is negative or not a
 /// number, and what is called elsewhere than in the function that it is for are refused by name: the
@@ -194,7 +194,7 @@ public:
             [&](BaseTopology &base) { return assignComponentTags(base, mesh); },
             [&](BaseTopology &base) { return assignFaceVaryingTopology(base, mesh); });
     }
-    /// The same with the default options.
+    /// Overload with default options.
     static std::unique_ptr<TopologyRefiner> Create(MESH const &mesh,
                                                    Sdc::Options sdcOptions = Sdc::Options(),
                                                    CallStatus *status = nullptr) {

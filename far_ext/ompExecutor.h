@@ -11,15 +11,18 @@
 
 namespace OpenSubdivHex::FarExt {
 
-/// \brief Runs loops on the threads of OpenMP, those of the calling thread's team: for hosts that
-/// have no others, or say by OMP_PROC_BIND and the like where they run.
+/// \brief Runs loops on OpenMP's threads: for hosts that bind these to processors (OMP_PROC_BIND).
 ///
-/// There only in programs compiled with OpenMP: this header is all of it.
+/// Header only, and only in programs compiled with OpenMP.
 ///
-/// OpenMP waits at the end of a loop for all threads of the team, for those too that find nothing to
-/// do, and its threads keep their processors while they wait, unless OMP_WAIT_POLICY is passive.
-/// Beside other threads that are busy a call can be many times slower so than with the default
-/// executor, or on one thread (benchmark busy).
+/// \code
+///     FarExt::OmpExecutor executor;
+///     FarExt::ExecutorScope const scope(&executor);
+/// \endcode
+///
+/// OpenMP waits at the end of a loop for all threads of the team, idle ones included, and threads keep their processors
+/// while they wait unless OMP_WAIT_POLICY is passive.  Beside other busy threads a call can be many times slower than with
+/// the default executor, or than on one thread (benchmark busy).
 class OmpExecutor : public Executor {
 public:
     int GetNumThreads() const override { return omp_get_max_threads(); }

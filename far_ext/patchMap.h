@@ -9,15 +9,20 @@
 
 namespace OpenSubdivHex::FarExt {
 
-/// \brief Where the patches of PatchTableFactory lie in the faces of the mesh, and in which patch a place of
-/// a face is: what Far::PatchMap is to ptex faces.
+/// \brief Finds the patch of PatchTableFactory that has a point (face, u, v) of the mesh, and (s, t) in it, as
+/// Far::PatchMap does for ptex faces.
 ///
-/// Places are those of the *surface level* (HexSchemeOptions::GetSurfaceLevel(): level 0, or 1 behind a first
-/// step), by (u, v) of its parameterization, as TopologyLevel::GetFaceSurfaceCoords() has them and as
-/// Bfr::Parameterization does.  A patch is a quadrilateral in the plane of TopologyLevel::GetFaceBaseCoords(), and
-/// (s, t) in it are bilinear.
+/// \code
+///     FarExt::PatchMap const map(*refiner, patchOptions);
+///     FarExt::PatchMap::Place const place = map.FindPlace(face, 0.5, 0.5);
+///     Osd::PatchCoord const coord(FarExt::PatchMap::GetHandle(place.patch), float(place.s), float(place.t));
+/// \endcode
 ///
-/// Nothing refers to the refiner afterwards.  Several threads may use it at once.
+/// Faces are those of the *surface level* (HexSchemeOptions::GetSurfaceLevel(): level 0, or 1 behind a first step); (u, v)
+/// are those of Bfr::Parameterization and TopologyLevel::GetFaceSurfaceCoords().  A patch is a quadrilateral in the plane
+/// of TopologyLevel::GetFaceBaseCoords(), in which (s, t) are bilinear.
+///
+/// The map does not refer to the refiner.  Several threads may use it at once.
 class OPENSUBDIVHEX_API PatchMap {
 public:
     /// A face or a patch.
@@ -30,7 +35,7 @@ public:
         double t;    ///< from corner 0 to corner 3
     };
 
-    /// \brief That of the patches that PatchTableFactory makes of \p refiner with \p options.
+    /// \brief The map of the patches that PatchTableFactory makes of \p refiner with \p options.
     ///
     /// \p status is set as by PatchTableFactory::Create(); on failure there are no patches.
     PatchMap(TopologyRefiner const &refiner, PatchTableFactory::Options options,
@@ -60,7 +65,7 @@ public:
     /// \return  no patch where the face is a hole, or none of the mesh
     Place FindPlace(Index face, double u, double v) const;
 
-    /// What Osd::PatchCoord takes beside s and t.
+    /// The handle that Osd::PatchCoord takes beside s and t.
     static Far::PatchTable::PatchHandle GetHandle(Index patch) {
         constexpr int kNumPoints = 20;
         Far::PatchTable::PatchHandle handle;

@@ -11,8 +11,13 @@
 
 namespace OpenSubdivHex::FarExt {
 
-/// \brief Makes a Far::PatchTable of the limit surface: what OpenSubdiv's evaluators, patch maps and
-/// tessellation shaders take, made by public functions of OpenSubdiv alone.
+/// \brief Makes a Far::PatchTable of the limit surface, for OpenSubdiv's evaluators, patch maps and tessellation shaders.
+///
+/// \code
+///     FarExt::PatchTableFactory::Options options(2); // the faces of level 2
+///     refiner->RefineUniform(options.GetRefineUniformOptions());
+///     auto table = FarExt::PatchTableFactory::Create(*refiner, options);
+/// \endcode
 ///
 /// All patches are bicubic Gregory patches of 20 points (GREGORY_BASIS), in one array: one for each half
 /// of a hexagon, one for each quad, and in other faces one for each corner, a *kite* with that corner,
@@ -20,15 +25,13 @@ namespace OpenSubdivHex::FarExt {
 /// half (as in kHexagonHalves) and corner; PatchMap says where they lie.  Holes have none.
 ///
 /// **Points.** The corners of patches lie on the limit surface.  Between them patches are close to it: the
-/// guide has numbers.  Patches that meet share the points of their common side, but where a side of a kite is
-/// half of its neighbour's, and have the same tangent planes along it; at sharp edges, and at the vertices
-/// there, each side has its own.
+/// guide has numbers.  Patches that meet share the points and tangent planes of their common side.  Exceptions: a side of a
+/// kite that is half of its neighbour's has points of its own; at sharp edges each side has its own tangent planes.
 ///
 /// The 20 points of every patch are local points, and the indices of patches count the control vertices
 /// first: point i of the local points has the index GetLevel(0).GetNumVertices() + i.  So a buffer has the control
-/// vertices and, behind them, what Far::PatchTable::GetLocalPointStencilTable() makes of these.  Where other
-/// vertices lie between, as with AppendLocalPointStencilTable(), evaluators are given a descriptor whose
-/// offset is larger by as many elements.
+/// vertices and, behind them, the results of Far::PatchTable::GetLocalPointStencilTable().  If other vertices lie
+/// between, as with AppendLocalPointStencilTable(), give evaluators a descriptor whose offset is larger by as many elements.
 ///
 /// **Face-varying channels** have a patch for each patch of the surface, with the same s and t: bilinear ones (QUADS)
 /// or Gregory patches of the channel's values.  These are the limit of the channel as those of the surface are of
@@ -104,8 +107,8 @@ public:
             fvarPatchPrecisionDouble = sizeof(REAL) == sizeof(double);
         }
 
-        /// \brief How the refiner is refined for these patches: by a level more than they are of, since
-        /// the surface in the middle of edges is a limit of that, with full topology.
+        /// \brief How to refine the refiner for these patches: one level further than the patches, with full topology,
+        /// because the surface in the middle of edges is a limit of that level.
         TopologyRefiner::UniformOptions GetRefineUniformOptions() const {
             TopologyRefiner::UniformOptions options(maxIsolationLevel + 1);
             options.fullTopologyInLastLevel = true;

@@ -35,7 +35,7 @@ public:
     bool Next();
 
     std::vector<Row> const &GetRows() const { return _rows; }
-    /// Of all these rows in turn.
+    /// The sources of all these rows, one after the other.
     Far::Index const *GetSources() const { return _sources.data(); }
     double const *GetWeights() const { return _weights.data(); }
 
@@ -84,7 +84,7 @@ private:
     std::vector<Far::Index> _sources;
 };
 
-/// What the elements of a user's array are counted in: its \c size_type, as of std::vector, else Index.
+/// The type that counts elements of a user's array: its \c size_type, as of std::vector, else Index.
 template <class ARRAY, class = void>
 struct ElementIndex {
     using Type = Far::Index;
@@ -188,7 +188,7 @@ public:
         return true;
     }
 
-    /// \brief The same with first derivatives, those that LimitStencilTableFactory says, on side 0
+    /// \brief Overload with the first derivatives of LimitStencilTableFactory, on side 0
     /// of each vertex (see LimitSides).
     template <class T, class U, class U1, class U2>
     bool Limit(T const &src, U &dstPos, U1 &dstTan1, U2 &dstTan2,

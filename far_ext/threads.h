@@ -6,12 +6,11 @@
 
 namespace OpenSubdivHex::FarExt {
 
-/// \brief Sets how many threads each call of this library, of all its parts, uses at most from now on
-/// when the calling thread makes it; other threads of the program keep their own number.
+/// \brief Sets how many threads each call of the calling thread uses at most, from now on.
 ///
-/// Until then, and again after 0 or less, the Executor in use says: the default one that of OpenMP,
-/// which is omp_set_num_threads() of the calling thread or OMP_NUM_THREADS, and in a build without
-/// OpenMP that of the processors.  Results do not depend on the number.
+/// 0 or less: as many as the Executor says, which is the initial state.  The default executor says OpenMP's number
+/// (omp_set_num_threads() of the calling thread, or OMP_NUM_THREADS); in a build without OpenMP the number of processors.
+/// Results do not depend on the number.
 ///
 /// For one call, see ExecutorScope.
 OPENSUBDIVHEX_API void SetNumThreads(int numThreads);

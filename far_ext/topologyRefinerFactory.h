@@ -15,8 +15,16 @@ namespace internal {
 class BaseMesh;
 }
 
-/// \brief Makes a TopologyRefiner from a base mesh as OpenSubdiv describes it.  MeshRefinerFactory
-/// makes one from a mesh class of your own.
+/// \brief Makes a TopologyRefiner from OpenSubdiv's base mesh, a Far::TopologyDescriptor or Far::TopologyRefiner.
+/// MeshRefinerFactory makes one from your own mesh class.
+///
+/// \code
+///     Sdc::Options sdcOptions;
+///     sdcOptions.SetVtxBoundaryInterpolation(Sdc::Options::VTX_BOUNDARY_EDGE_AND_CORNER);
+///     FarExt::TopologyRefinerFactory::Options options;
+///     options.schemeOptions.faceMask = FarExt::FaceMask::Smooth;
+///     auto refiner = FarExt::TopologyRefinerFactory::Create(descriptor, sdcOptions, options);
+/// \endcode
 ///
 /// Level 0 keeps the base's numbering of vertices, edges, faces, corners and face-varying values;
 /// INDEXING.md says what becomes of non-manifold edges.
@@ -24,7 +32,7 @@ class BaseMesh;
 /// Several threads may call it at once, also for the same base.  std::bad_alloc passes through.
 class OPENSUBDIVHEX_API TopologyRefinerFactory {
 public:
-    /// \brief How the mesh is refined.
+    /// \brief The scheme of the refinement.
     struct Options {
         HexSchemeOptions schemeOptions; ///< scheme and face mask
     };
@@ -57,14 +65,14 @@ public:
     ///             there, where semi-sharp creases meet that lie between faces which no edges join
     static std::unique_ptr<TopologyRefiner> Create(Far::TopologyRefiner const &base,
                                                    Options options, CallStatus *status = nullptr);
-    /// The same with the default options.
+    /// Overload with default options.
     static std::unique_ptr<TopologyRefiner> Create(Far::TopologyRefiner const &base,
                                                    CallStatus *status = nullptr) {
         return Create(base, Options(), status);
     }
 
-    /// \brief The same from a descriptor, as Far's factory takes it, with the boundary, crease and
-    /// face-varying options \p sdcOptions.  Edges are numbered as Far does: see INDEXING.md.
+    /// \brief Overload for a descriptor, with the boundary, crease and face-varying options \p sdcOptions.  Edges are
+    /// numbered as Far numbers them: see INDEXING.md.
     ///
     /// Additionally refuses, with InvalidTopology, indices out of range: of vertices in faces,
     /// creases and corners, of faces that are holes, and of face-varying values; a crease that is
@@ -72,7 +80,7 @@ public:
     static std::unique_ptr<TopologyRefiner> Create(Far::TopologyDescriptor const &descriptor,
                                                    Sdc::Options sdcOptions, Options options,
                                                    CallStatus *status = nullptr);
-    /// The same with the default scheme options.
+    /// Overload with default scheme options.
     static std::unique_ptr<TopologyRefiner> Create(Far::TopologyDescriptor const &descriptor,
                                                    Sdc::Options sdcOptions = Sdc::Options(),
                                                    CallStatus *status = nullptr) {

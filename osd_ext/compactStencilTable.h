@@ -20,8 +20,7 @@ namespace internal {
 
 struct StencilBlock;
 
-/// \brief The stencils of a table: as StencilEvaluator takes them or, if there are blocks, in
-/// these.
+/// \brief The stencils of a table: sizes, offsets and indices, or blocks.
 struct StencilRows {
     /// Whether the weights of a stencil are found without a look at those before it.
     bool HasPlaces() const { return offsets || blocks; }
@@ -34,17 +33,19 @@ struct StencilRows {
 
 } // namespace internal
 
-/// \brief A stencil table in blocks: stencils that follow each other and have the same indices, as
-/// those of the corners of a face do, share one list of them.
+/// \brief A stencil table in less memory: consecutive stencils with the same indices, such as those of the corners of a
+/// face, share one list of indices.
 ///
-/// Evaluated by CpuEvaluator and OmpEvaluator, with the results of the table that it was made from,
-/// bit for bit.  For tables of the hexagonal scheme it takes 0.62 to 0.65 of the memory, and
-/// evaluation is 1.1 to 1.7 times as fast on one thread (benchmark evaluation, compact table).  A
-/// table whose stencils share no lists, as those of Catmull-Clark, gets larger.
+/// \code
+///     auto compact = OsdExt::CompactStencilTable::Create(*table);
+///     OsdExt::OmpEvaluator::EvalStencils(src, desc, dst, desc, compact.get());
+/// \endcode
+///
+/// CpuEvaluator, OmpEvaluator and TbbEvaluator take it, with the results of the table that it was made from, bit for bit;
+/// other evaluators do not.  For tables of the hexagonal scheme it takes 0.62 to 0.65 of the memory, and evaluation is 1.1
+/// to 1.7 times as fast on one thread (benchmark evaluation, compact table).  A table of Catmull-Clark gets larger.
 ///
 /// Several threads may make, and evaluate, the same table at once.  std::bad_alloc passes through.
-///
-/// It is this library's own: other evaluators, on GPUs for one, take the Far::StencilTable.
 class OPENSUBDIVHEX_API CompactStencilTable {
 public:
     ~CompactStencilTable();
@@ -58,7 +59,7 @@ public:
     int GetNumControlVertices() const { return _numControlVertices; }
     /// Lists of indices that stencils share.
     int GetNumBlocks() const;
-    /// Of all arrays.
+    /// Bytes of all arrays.
     std::size_t GetNumBytes() const;
 
 private:

@@ -8,8 +8,12 @@
 namespace OpenSubdivHex::OsdExt {
 
 /// \brief Evaluates stencils and patches on the calling thread, in ascending order: a faster
-/// Osd::CpuEvaluator.  See StencilEvaluator and PatchEvaluator for its functions, SimdLevel for the
-/// instructions that it uses for stencils.
+/// Osd::CpuEvaluator.  StencilEvaluator and PatchEvaluator have its functions, SimdLevel its
+/// instructions for stencils.
+///
+/// \code
+///     OsdExt::CpuEvaluator::EvalStencils(srcBuffer, srcDesc, dstBuffer, dstDesc, table.get());
+/// \endcode
 class OPENSUBDIVHEX_API CpuEvaluator : public StencilEvaluator<CpuEvaluator>,
                                        public PatchEvaluator<CpuEvaluator> {
     friend class StencilEvaluator<CpuEvaluator>;

@@ -16,15 +16,19 @@ namespace Osd = OpenSubdiv::Osd;
 
 namespace OsdExt {
 
-/// \brief Osd::CudaStencilTable for programs whose OpenSubdiv has none: a stencil table on the current
-/// device of CUDA.
+/// \brief A stencil table on the current CUDA device: Osd::CudaStencilTable for an OpenSubdiv without CUDA.
+///
+/// \code
+///     std::unique_ptr<OsdExt::CudaStencilTable> const onDevice(OsdExt::CudaStencilTable::Create(table.get()));
+///     OsdExt::CudaEvaluator::EvalStencils(src, desc, dst, desc, onDevice.get());
+/// \endcode
 class OPENSUBDIVHEX_API CudaStencilTable {
 public:
     /// \brief Copies a table to the device, and waits for it.
     ///
     /// Memory that is not there throws std::bad_alloc, any other error std::runtime_error.
     static CudaStencilTable *Create(Far::StencilTable const *table, void *deviceContext = nullptr);
-    /// The same with the weights of first derivatives.
+    /// Overload with the weights of first derivatives.
     static CudaStencilTable *Create(Far::LimitStencilTable const *table,
                                     void *deviceContext = nullptr);
     /// Frees them, when the device has done what it was asked for.
@@ -44,9 +48,9 @@ public:
     void *GetIndicesBuffer() const;
     /// A weight for each index.
     void *GetWeightsBuffer() const;
-    /// The same of first derivatives; null without these.
+    /// A weight of the derivative by u for each index; null without derivatives.
     void *GetDuWeightsBuffer() const;
-    /// The same of the other first derivatives.
+    /// A weight of the derivative by v for each index; null without derivatives.
     void *GetDvWeightsBuffer() const;
     /// @}
 
@@ -61,9 +65,9 @@ private:
     std::unique_ptr<Arrays> _arrays;
 };
 
-/// \brief Osd::CudaEvaluator for programs whose OpenSubdiv has none: evaluates stencil tables on the
-/// current device of CUDA, with four threads for each stencil and elements of up to 4 floats in
-/// registers.
+/// \brief Evaluates stencil tables on the current CUDA device: Osd::CudaEvaluator for an OpenSubdiv without CUDA.
+///
+/// Four threads sum a stencil, with elements of up to 4 floats in registers.
 ///
 /// Element j of a buffer is the \c length floats from <tt>offset + j * stride</tt> on; stencil i is
 /// written to element i.  Source and destination may be one buffer, as long as no float is both read
@@ -99,7 +103,7 @@ public:
                             stencilTable->GetNumStencils(), deviceContext);
     }
 
-    /// The same with first derivatives.
+    /// Overload with first derivatives.
     template <class SRC_BUFFER, class DST_BUFFER, class STENCIL_TABLE>
     static bool
     EvalStencils(SRC_BUFFER *srcBuffer, Osd::BufferDescriptor const &srcDesc, DST_BUFFER *dstBuffer,
@@ -136,7 +140,7 @@ public:
                              int const *offsets, int const *indices, float const *weights,
                              int start, int end, void *deviceContext = nullptr);
 
-    /// The same with first derivatives.
+    /// Overload with first derivatives.
     static bool EvalStencils(float const *src, Osd::BufferDescriptor const &srcDesc, float *dst,
                              Osd::BufferDescriptor const &dstDesc, float *du,
                              Osd::BufferDescriptor const &duDesc, float *dv,

@@ -2,7 +2,7 @@
 #ifndef OPENSUBDIVHEX_OSD_EXT_CUDA_STREAM_H
 #define OPENSUBDIVHEX_OSD_EXT_CUDA_STREAM_H
 
-// What the runtime of CUDA calls so, too.
+// The name of the type in CUDA's runtime.
 struct CUstream_st;
 
 namespace OpenSubdivHex::OsdExt {

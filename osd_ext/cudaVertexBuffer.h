@@ -6,8 +6,7 @@
 
 namespace OpenSubdivHex::OsdExt {
 
-/// \brief Osd::CudaVertexBuffer for programs whose OpenSubdiv has none: floats on the current device
-/// of CUDA.
+/// \brief Floats on the current CUDA device: Osd::CudaVertexBuffer for an OpenSubdiv without CUDA.
 ///
 /// A device context is a cudaStream_t, null for the default one.  Memory that is not there throws
 /// std::bad_alloc, any other error std::runtime_error with its name.

@@ -77,7 +77,7 @@ bool EvalStencilsInRanges(Osd::GLComputeEvaluator const &instance, SRC_BUFFER *s
         });
 }
 
-/// The same with first derivatives, which tables of a Far::LimitStencilTable have.
+/// Overload with first derivatives, for tables of a Far::LimitStencilTable.
 template <class SRC_BUFFER, class DST_BUFFER>
 bool EvalStencilsInRanges(Osd::GLComputeEvaluator const &instance, SRC_BUFFER *srcBuffer,
                           Osd::BufferDescriptor const &srcDesc, DST_BUFFER *dstBuffer,

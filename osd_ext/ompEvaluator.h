@@ -7,16 +7,17 @@
 
 namespace OpenSubdivHex::OsdExt {
 
-/// \brief Evaluates stencils on as many threads as FarExt::SetNumThreads() or OpenMP say: a faster
-/// Osd::OmpEvaluator.  See StencilEvaluator for its functions, SimdLevel for the instructions that
-/// it uses.
+/// \brief Evaluates stencils and patches on several threads: a faster Osd::OmpEvaluator.  StencilEvaluator and
+/// PatchEvaluator have its functions, SimdLevel its instructions for stencils.
 ///
-/// Results are those of CpuEvaluator, bit for bit.  Ranges of few stencils are evaluated on the
-/// calling thread.
+/// \code
+///     OsdExt::OmpEvaluator::EvalStencils(srcBuffer, srcDesc, dstBuffer, dstDesc, table.get());
+/// \endcode
 ///
-/// The threads are those of FarExt::GetExecutor(), by default not OpenMP's own, which wait for each
-/// other at the end of every loop and keep their processors meanwhile: beside other threads that are
-/// busy they can be slower than one.  Give the call a FarExt::OmpExecutor to have them.
+/// Results are those of CpuEvaluator, bit for bit.  Short ranges are evaluated on the calling thread.
+///
+/// Threads are those of FarExt::GetExecutor(), as many as FarExt::SetNumThreads() or OpenMP say.  By default they are not
+/// OpenMP's own threads, which are slow beside other busy threads: give the call a FarExt::OmpExecutor to use those.
 class OPENSUBDIVHEX_API OmpEvaluator : public StencilEvaluator<OmpEvaluator>,
                                        public PatchEvaluator<OmpEvaluator> {
     friend class StencilEvaluator<OmpEvaluator>;

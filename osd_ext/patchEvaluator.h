@@ -13,15 +13,14 @@ namespace OpenSubdivHex::OsdExt {
 /// its functions.  Patches of the types REGULAR, GREGORY_BASIS and QUADS, which those of Catmull-Clark and
 /// of PatchTableFactory are, are evaluated here; others, which those of Loop are, by Osd::CpuEvaluator.
 ///
-/// **Results** are those of Osd::CpuEvaluator but for rounding, its approximate derivatives of Gregory
-/// patches and its scale of derivatives by the depth of patches included.  A place of a side of two
-/// patches that have the same points there is the same, bit for bit, from both, where 1 - s, or 1 - t, is exact;
-/// not so with Osd::CpuEvaluator, where results differ by 1e-7 of their size.
+/// **Results** are those of Osd::CpuEvaluator except for rounding, with its approximate derivatives of Gregory patches and
+/// its scale of derivatives by the depth of patches.  Two patches with the same points on their common side have bitwise
+/// equal results there if 1 - s, or 1 - t, is exact.  Osd::CpuEvaluator's differ by 1e-7 of their size.
 ///
 /// **Elements** and **aliasing** are as in StencilEvaluator: elements that are read may not be written.
 /// Outputs may be null, and are then left out.
 ///
-/// **Order.** Places of one patch that follow one another take the least time.
+/// **Order.** Evaluation is fastest where points of one patch follow one another.
 ///
 /// **Threads.** As in StencilEvaluator: results are the same, bit for bit, for any evaluator and number of
 /// threads.
@@ -49,7 +48,7 @@ public:
         return eval(srcBuffer, srcDesc, {bind(dstBuffer, dstDesc)}, numPatchCoords, patchCoords,
                     getVertexPatches(patchTable));
     }
-    /// The same with first derivatives.
+    /// Overload with first derivatives.
     template <class SRC, class DST, class COORDS, class TABLE>
     static bool EvalPatches(SRC *srcBuffer, Desc const &srcDesc, DST *dstBuffer,
                             Desc const &dstDesc, DST *duBuffer, Desc const &duDesc, DST *dvBuffer,
@@ -60,7 +59,7 @@ public:
                     {bind(dstBuffer, dstDesc), bind(duBuffer, duDesc), bind(dvBuffer, dvDesc)},
                     numPatchCoords, patchCoords, getVertexPatches(patchTable));
     }
-    /// The same with first and second derivatives.
+    /// Overload with first and second derivatives.
     template <class SRC, class DST, class COORDS, class TABLE>
     static bool EvalPatches(SRC *srcBuffer, Desc const &srcDesc, DST *dstBuffer,
                             Desc const &dstDesc, DST *duBuffer, Desc const &duDesc, DST *dvBuffer,
@@ -84,7 +83,7 @@ public:
         return eval(srcBuffer, srcDesc, {bind(dstBuffer, dstDesc)}, numPatchCoords, patchCoords,
                     getVaryingPatches(patchTable));
     }
-    /// The same with first derivatives.
+    /// Overload with first derivatives.
     template <class SRC, class DST, class COORDS, class TABLE>
     static bool EvalPatchesVarying(SRC *srcBuffer, Desc const &srcDesc, DST *dstBuffer,
                                    Desc const &dstDesc, DST *duBuffer, Desc const &duDesc,
@@ -107,7 +106,7 @@ public:
         return eval(srcBuffer, srcDesc, {bind(dstBuffer, dstDesc)}, numPatchCoords, patchCoords,
                     getFVarPatches(patchTable, fvarChannel));
     }
-    /// The same with first derivatives.
+    /// Overload with first derivatives.
     template <class SRC, class DST, class COORDS, class TABLE>
     static bool EvalPatchesFaceVarying(SRC *srcBuffer, Desc const &srcDesc, DST *dstBuffer,
                                        Desc const &dstDesc, DST *duBuffer, Desc const &duDesc,
@@ -146,7 +145,7 @@ public:
                     patchParamBuffer},
                    numPatchCoords);
     }
-    /// The same with first derivatives.
+    /// Overload with first derivatives.
     static bool EvalPatches(float const *src, Desc const &srcDesc, float *dst, Desc const &dstDesc,
                             float *du, Desc const &duDesc, float *dv, Desc const &dvDesc,
                             int numPatchCoords, Osd::PatchCoord const *patchCoords,
@@ -161,7 +160,7 @@ public:
                     patchParamBuffer},
                    numPatchCoords);
     }
-    /// The same with first and second derivatives.
+    /// Overload with first and second derivatives.
     static bool EvalPatches(float const *src, Desc const &srcDesc, float *dst, Desc const &dstDesc,
                             float *du, Desc const &duDesc, float *dv, Desc const &dvDesc,
                             float *duu, Desc const &duuDesc, float *duv, Desc const &duvDesc,
@@ -186,7 +185,7 @@ public:
     /// @}
 
 private:
-    // What a table has of one kind of data.
+    // The arrays of a table for one kind of data.
     struct Patches {
         Osd::PatchArray const *arrays = nullptr;
         int const *indices = nullptr;

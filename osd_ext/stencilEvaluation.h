@@ -16,8 +16,13 @@ namespace Osd = OpenSubdiv::Osd;
 
 namespace OsdExt {
 
-/// \brief Makes a buffer (such as Osd::CpuVertexBuffer) for EvalStencilsInPlace: room for the
-/// control vertices of \p table and, after them, for its stencils.
+/// \brief Makes a buffer (such as Osd::CpuVertexBuffer) for the control vertices of \p table and, behind them, its results.
+///
+/// \code
+///     auto buffer = OsdExt::CreateInPlaceBuffer<Osd::CpuVertexBuffer>(*table, 3);
+///     buffer->UpdateData(positions, 0, table->GetNumControlVertices());
+///     OsdExt::EvalStencilsInPlace<OsdExt::OmpEvaluator>(*table, buffer.get());
+/// \endcode
 ///
 /// \param numElements  floats per vertex
 /// \return  null for less than 1, and where the floats of the buffer are more than 2^31 - 1, which

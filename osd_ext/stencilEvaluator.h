@@ -17,7 +17,7 @@ namespace OsdExt {
 
 namespace internal {
 
-/// \brief A set of weights and where their sums go: the value or one of its derivatives.
+/// \brief An output of stencils, the value or a derivative: its weights and its destination.
 struct StencilOutput {
     float *dst;
     Osd::BufferDescriptor desc;
@@ -26,10 +26,8 @@ struct StencilOutput {
 
 } // namespace internal
 
-/// \brief The static functions of CpuEvaluator, OmpEvaluator and TbbEvaluator, which are its EVALUATOR.
-///
-/// They have the signatures of Osd::CpuEvaluator, so that templates over the evaluator, such as
-/// Osd::Mesh and EvalStencilsInPlace, accept them.  PatchEvaluator has the EvalPatches functions.
+/// \brief Functions of CpuEvaluator, OmpEvaluator and TbbEvaluator that evaluate stencils, with the signatures of
+/// Osd::CpuEvaluator, so that templates such as Osd::Mesh accept them.  PatchEvaluator has the EvalPatches functions.
 ///
 /// **Tables.** Any Far::StencilTable or Far::LimitStencilTable, of this library or of OpenSubdiv,
 /// or a class with their functions, and CompactStencilTable.  Offsets may be missing, as Far's
@@ -85,7 +83,7 @@ public:
                          {bind(dstBuffer, dstDesc, *stencilTable, stencilTable->GetWeights())});
     }
 
-    /// The same of a table in blocks.
+    /// Overload for a CompactStencilTable.
     template <class SRC_BUFFER, class DST_BUFFER>
     static bool
     EvalStencils(SRC_BUFFER *srcBuffer, Osd::BufferDescriptor const &srcDesc, DST_BUFFER *dstBuffer,
@@ -97,7 +95,7 @@ public:
                                     stencilTable->getRows(), 0, stencilTable->GetNumBlocks());
     }
 
-    /// The same with first derivatives, which Far::LimitStencilTable has.
+    /// Overload with first derivatives, for a Far::LimitStencilTable.
     template <class SRC_BUFFER, class DST_BUFFER, class STENCIL_TABLE>
     static bool
     EvalStencils(SRC_BUFFER *srcBuffer, Osd::BufferDescriptor const &srcDesc, DST_BUFFER *dstBuffer,
@@ -112,7 +110,7 @@ public:
                           bind(dvBuffer, dvDesc, *stencilTable, stencilTable->GetDvWeights())});
     }
 
-    /// The same with first and second derivatives.
+    /// Overload with first and second derivatives.
     template <class SRC_BUFFER, class DST_BUFFER, class STENCIL_TABLE>
     static bool
     EvalStencils(SRC_BUFFER *srcBuffer, Osd::BufferDescriptor const &srcDesc, DST_BUFFER *dstBuffer,
@@ -155,7 +153,7 @@ public:
                     start, end);
     }
 
-    /// The same with first derivatives.
+    /// Overload with first derivatives.
     static bool EvalStencils(float const *src, Osd::BufferDescriptor const &srcDesc, //
                              float *dst, Osd::BufferDescriptor const &dstDesc,       //
                              float *du, Osd::BufferDescriptor const &duDesc,         //
@@ -168,7 +166,7 @@ public:
                     {sizes, offsets, indices, nullptr}, start, end);
     }
 
-    /// The same with first and second derivatives.
+    /// Overload with first and second derivatives.
     static bool EvalStencils(float const *src, Osd::BufferDescriptor const &srcDesc, //
                              float *dst, Osd::BufferDescriptor const &dstDesc,       //
                              float *du, Osd::BufferDescriptor const &duDesc,         //

@@ -7,11 +7,15 @@
 
 namespace OpenSubdivHex::OsdExt {
 
-/// \brief Evaluates stencils on the threads of TBB, in the arena of the calling thread: a faster
+/// \brief Evaluates stencils and patches on TBB's threads, in the arena of the calling thread: a faster
 /// Osd::TbbEvaluator.  It is OmpEvaluator with a FarExt::TbbExecutor, whatever executor is set, and as
 /// many threads as FarExt::SetNumThreads() or a FarExt::ExecutorScope says.
 ///
-/// This header is all of it: a program that includes it links TBB.
+/// \code
+///     OsdExt::TbbEvaluator::EvalStencils(srcBuffer, srcDesc, dstBuffer, dstDesc, table.get());
+/// \endcode
+///
+/// Header only: a program that includes this header links TBB.
 class TbbEvaluator : public StencilEvaluator<TbbEvaluator>, public PatchEvaluator<TbbEvaluator> {
     friend class StencilEvaluator<TbbEvaluator>;
     friend class PatchEvaluator<TbbEvaluator>;

@@ -6,14 +6,19 @@
 
 namespace OpenSubdivHex::OsdExt {
 
-/// \brief The faces of a level as triangles: three corners each.
+/// \brief Index buffers of the triangles that draw a level: three corners each.
+///
+/// \code
+///     OsdExt::TriangleIndices const triangles = OsdExt::CreateTriangleIndices(refiner->GetLevel(3));
+///     Draw(triangles.vertices.data(), triangles.GetNumTriangles());
+/// \endcode
 struct TriangleIndices : DrawnFaces {
     /// How many there are.
     int GetNumTriangles() const { return int(faces.size()); }
 };
 
-/// \brief Triangulates polygons: one of n sides makes n - 2 triangles that zigzag across it, so that
-/// no vertex collects them all, one of less than three none.  They are in the order and the orientation of the polygons.
+/// \brief Triangulates polygons, in their order and orientation.  A polygon of n sides makes n - 2 triangles that zigzag
+/// across it, so that no vertex has them all; one of less than three sides makes none.
 ///
 /// Works in parallel, with the same result for any number of threads; several threads may call it at
 /// once.  std::bad_alloc passes through.

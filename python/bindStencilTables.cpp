@@ -137,20 +137,18 @@ py::array_t<int> getVerticesOfFaces(Refiner const &refiner, py::object const &ba
     return TakeOver(std::move(vertices));
 }
 
-py::dict estimateSize(Refiner const &refiner, TableOptions const &options, bool isDouble) {
+py::dict getSize(Refiner const &refiner, TableOptions const &options, bool isDouble) {
     CallStatus status;
     StencilTableSize const size = refiner.Read([&](TopologyRefiner const &topology) {
-        return isDouble
-                   ? StencilTableFactoryReal<double>::EstimateSize(topology, options.Get<double>(),
+        return isDouble ? StencilTableFactoryReal<double>::GetSize(topology, options.Get<double>(),
                                                                    &status)
-                   : StencilTableFactory::EstimateSize(topology, options.Get<float>(), &status);
+                        : StencilTableFactory::GetSize(topology, options.Get<float>(), &status);
     });
     RaiseUnlessOk(status);
     py::dict result;
     result["num_stencils"] = size.numStencils;
     result["num_weights"] = size.numWeights;
     result["num_bytes"] = size.numBytes;
-    result["num_peak_bytes"] = size.numPeakBytes;
     return result;
 }
 
@@ -321,19 +319,20 @@ void bindTable(py::module_ &module) {
             py::arg("refiner"), py::arg("base_faces"), py::arg("level"), py::kw_only(),
             py::arg("interpolation_mode") = "vertex", py::arg("fvar_channel") = 0)
         .def_static(
-            "estimate_size",
+            "get_size",
             [](Refiner const &refiner, py::object const &mode, bool controlVerts, bool intermediate,
                bool factorize, std::optional<int> maxLevel, int channel, py::object const &dtype) {
-                return estimateSize(
+                return getSize(
                     refiner,
                     takeOptions(mode, controlVerts, intermediate, factorize, maxLevel, channel),
                     takeIsDouble(dtype));
             },
-            "estimate_size(refiner, *, interpolation_mode='vertex', generate_control_verts=False,\n"
-            "              generate_intermediate_levels=True, factorize_intermediate_levels=True,\n"
-            "              max_level=None, fvar_channel=0, dtype='float32')\n\n"
-            "How large a table will be: a dict with the integers 'num_stencils', 'num_weights',\n"
-            "'num_bytes' of its arrays and 'num_peak_bytes' of its making.",
+            "get_size(refiner, *, interpolation_mode='vertex', generate_control_verts=False,\n"
+            "         generate_intermediate_levels=True, factorize_intermediate_levels=True,\n"
+            "         max_level=None, fvar_channel=0, dtype='float32')\n\n"
+            "How large a table will be: a dict with the integers 'num_stencils', 'num_weights' "
+            "and\n"
+            "'num_bytes' of its arrays.",
             py::arg("refiner"), py::kw_only(), py::arg("interpolation_mode") = "vertex",
             py::arg("generate_control_verts") = false,
             py::arg("generate_intermediate_levels") = true,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "threadPool.h"
+#include "far_ext/executor.h"
 
 #include "far_ext/threads.h"
 
@@ -24,7 +24,9 @@
 #include <pthread.h>
 #endif
 
-namespace OpenSubdivHex::FarExt::internal {
+namespace OpenSubdivHex::FarExt {
+
+namespace internal {
 
 namespace {
 
@@ -343,6 +345,8 @@ private:
 
 } // namespace
 
-Executor &GetThreadPool() { return ThreadPool::Get(); }
+} // namespace internal
 
-} // namespace OpenSubdivHex::FarExt::internal
+Executor &GetDefaultExecutor() { return internal::ThreadPool::Get(); }
+
+} // namespace OpenSubdivHex::FarExt

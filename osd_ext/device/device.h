@@ -4,17 +4,13 @@
 
 #include "deviceKernels.h"
 
-#include "far_ext/export.h"
-#include "far_ext/status.h"
+#include "osd_ext/deviceRefinementEvaluator.h"
 
 #include <cstdint>
 #include <functional>
 #include <string>
 
 namespace OpenSubdivHex::OsdExt::internal {
-
-/// What a device calls a buffer: a name of OpenGL, or an address.
-using DeviceBufferName = std::uint64_t;
 
 /// \brief A kernel to be run on \c count things.
 struct OPENSUBDIVHEX_API DeviceTask {

@@ -6,8 +6,6 @@
 #include "deviceLimit.h"
 #include "deviceRefinement.h"
 
-#include "osd_ext/refinementEvaluator.h"
-
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -24,11 +22,7 @@ class OPENSUBDIVHEX_API DeviceEvaluator {
 public:
     using Options = RefinementEvaluator::Options;
 
-    /// \brief A buffer and the descriptor of its elements.
-    struct Values {
-        DeviceBufferName buffer;
-        Osd::BufferDescriptor desc;
-    };
+    using Values = DeviceValues;
 
     DeviceEvaluator(std::unique_ptr<Device> device, FarExt::TopologyRefiner const &refiner);
 

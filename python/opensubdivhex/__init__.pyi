@@ -522,7 +522,7 @@ class StencilTable:
         fvar_channel: int = 0,
     ) -> NDArray[np.int32]: ...
     @staticmethod
-    def estimate_size(
+    def get_size(
         refiner: TopologyRefiner,
         *,
         interpolation_mode: _StencilMode = "vertex",

@@ -171,7 +171,7 @@ std::vector<Step> const &getSteps() {
          [](Subject const &, TopologyRefiner &refiner) { createSelection(refiner); }},
         {"size of a table", true,
          [](Subject const &, TopologyRefiner &refiner) {
-             StencilTableFactory::EstimateSize(refiner, {});
+             StencilTableFactory::GetSize(refiner, {});
          }},
         {"limit of the base", true,
          [](Subject const &, TopologyRefiner &refiner) { createLimit<double>(refiner, 0); }},

@@ -57,7 +57,7 @@ std::vector<float> makeTables(TopologyRefiner const &refiner) {
     options.interpolationMode = FarExt::INTERPOLATE_VERTEX;
     add(StencilTableFactory::CreateOfFaces(refiner, Far::ConstIndexArray(faces, 2), options)
             ->GetWeights());
-    weights.push_back(float(StencilTableFactory::EstimateSize(refiner, options).numWeights));
+    weights.push_back(float(StencilTableFactory::GetSize(refiner, options).numWeights));
     FarExt::LimitStencilTableFactory::Options limitOptions;
     limitOptions.level = refiner.GetMaxLevel();
     limitOptions.generateFurtherSides = true;
