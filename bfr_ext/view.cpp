@@ -480,20 +480,21 @@ CellTree View::MakeTree(Surface<REAL> const &surface, REAL const controlPoints[]
     internal::BaseFace base;
     base.Set(surface._type, controlPoints, pointDesc.stride,
              std::size_t(surface.GetNumControlPoints()));
-    return makeTree(
-        surface.GetFaceSize(), [&]() -> internal::BaseFace const & { return base; }, measures,
-        previous, visibility);
+    CellTree tree(surface.GetFaceSize());
+    refine(
+        tree, [&]() -> internal::BaseFace const & { return base; }, measures, previous, visibility);
+    return tree;
 }
 
-CellTree View::makeTree(int faceSize, std::function<internal::BaseFace const &()> const &getBase,
-                        internal::FaceMeasures &measures, CellTree const *previous,
-                        std::vector<CellVisibility> *visibility) const {
-    CellTree tree(faceSize);
+// The tree has one cell before.
+void View::refine(CellTree &tree, std::function<internal::BaseFace const &()> const &getBase,
+                  internal::FaceMeasures &measures, CellTree const *previous,
+                  std::vector<CellVisibility> *visibility) const {
     if (visibility) {
         visibility->clear();
     }
     if (IsValid()) {
-        bool const hasPrevious = previous && previous->GetFaceSize() == faceSize;
+        bool const hasPrevious = previous && previous->GetFaceSize() == tree.GetFaceSize();
         internal::TreeMaker(*_geometry, _options, getBase, measures,
                             hasPrevious ? previous : nullptr, tree, visibility)
             .Make();
@@ -501,7 +502,6 @@ CellTree View::makeTree(int faceSize, std::function<internal::BaseFace const &()
     if (visibility) {
         visibility->resize(std::size_t(tree.GetNumCells()));
     }
-    return tree;
 }
 
 template <typename REAL>
@@ -632,11 +632,8 @@ CellForest View::makeForest(SurfaceFactory const &factory, ViewBounds *bounds,
                     state.surface.Init(face);
                     return state.surface.GetBase();
                 };
-                CellTree tree = makeTree(level.GetFaceSize(face), std::cref(getBase), measures,
-                                         last, counts ? &visibility[std::size_t(face)] : nullptr);
-                if (tree.IsRefined(0)) {
-                    forest.SetTree(face, std::move(tree));
-                }
+                refine(forest._trees[std::size_t(face)], std::cref(getBase), measures, last,
+                       counts ? &visibility[std::size_t(face)] : nullptr);
                 if (bounds) {
                     bounds->trim(face, memory);
                 }

@@ -220,9 +220,9 @@ private:
     template <typename REAL>
     class FaceSurface;
 
-    CellTree makeTree(int faceSize, std::function<internal::BaseFace const &()> const &getBase,
-                      internal::FaceMeasures &measures, CellTree const *previous,
-                      std::vector<CellVisibility> *visibility) const;
+    void refine(CellTree &tree, std::function<internal::BaseFace const &()> const &getBase,
+                internal::FaceMeasures &measures, CellTree const *previous,
+                std::vector<CellVisibility> *visibility) const;
     template <typename REAL>
     CellForest makeForest(SurfaceFactory const &factory, ViewBounds *bounds, REAL const *meshPoints,
                           std::ptrdiff_t stride, CellForest const *previous, Counts *counts) const;
