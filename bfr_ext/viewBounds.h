@@ -24,7 +24,7 @@ struct MeshMeasures;
 ///     BfrExt::CellForest const forest = view.MakeForest(bounds, positions, 3); // each frame
 /// \endcode
 ///
-/// Flatness, boxes and directions of cells take most of the time of View::MakeForest().  They are kept by base face with the
+/// Flatness, places and directions of cells take most of the time of View::MakeForest().  They are kept by base face with the
 /// positions that they were measured for; where positions have changed, they are measured again.  Forests are the same, to
 /// the last cell, with and without.
 ///

@@ -13,15 +13,12 @@ constexpr int kMaxPointsOfCell = 128;
 constexpr int kMaxPointsOfFace = 512;
 
 // What lies between samples: of a quadratic surface up to a fifteenth of the range of heights, and of children, which
-// have fewer samples, up to a third.
-constexpr double kFactor = 1.125;
+// have fewer samples, mostly less than a quarter.
+constexpr double kFactorOfCell = 1.125;
 constexpr double kFactorOfChildren = 1.25;
-// A quarter of the thickness is what the same half of an F-face has where the surface is smooth: with
-// kFactorOfChildren, a little more.
+// Each step leaves a quarter of the thickness where the surface is smooth: with a margin, of the factors' size.
 constexpr double kLeastOfWhole = 0.3;
 constexpr double kExpected = 0.22;
-
-Pair getMiddle(Pair const &p, Pair const &q) { return {(p[0] + q[0]) / 2, (p[1] + q[1]) / 2}; }
 
 } // namespace
 
@@ -41,7 +38,7 @@ CellGrid &CellGrid::Get(int faceSize) {
 int CellGrid::add(Shape const &shape, int numSteps, Source source) {
     std::size_t const number = _cells.size();
     _cells.emplace_back();
-    _cells[number].factor = numSteps == kNumSteps ? kFactor : kFactorOfChildren;
+    _cells[number].factor = numSteps == kNumSteps ? kFactorOfCell : kFactorOfChildren;
     int const numCorners = shape.isWhole ? _faceSize : 4;
     for (int i = 0; i < numCorners; ++i) {
         int const sample = int(_places.Find(
@@ -69,25 +66,15 @@ int CellGrid::add(Shape const &shape, int numSteps, Source source) {
     return int(number);
 }
 
-CellGrid::Shape CellGrid::getChild(Shape const &shape, int child) const {
-    if (shape.isWhole) {
-        double const half = shape.scale / 2;
-        if (child == 0) {
-            return {true, 0, half, {}};
-        }
-        return {false, child - 1, 0, {{{shape.scale, 0}, {0, shape.scale}, {0, half}, {half, 0}}}};
-    }
-    Pair const middle = getMiddle(shape.corners[0], shape.corners[1]);
-    std::array<Pair, 4> inner;
-    for (std::size_t i = 0; i < 4; ++i) {
-        inner[i] = getMiddle(shape.corners[i], middle);
+CellGrid::Shape CellGrid::getChild(Shape const &shape, int child) {
+    if (!shape.isWhole) {
+        return {false, shape.sector, 0,
+                HalfCell::GetCornersOfChild(shape.corners, std::size_t(child))};
     }
     if (child == 0) {
-        return {false, shape.sector, 0, inner};
+        return {true, 0, shape.scale / 2, {}};
     }
-    auto const i = std::size_t(child);
-    std::size_t const next = (i + 1) % 4;
-    return {false, shape.sector, 0, {shape.corners[i], shape.corners[next], inner[next], inner[i]}};
+    return {false, child - 1, 0, HalfCell::GetCornersAtEdge<Pair>(shape.scale)};
 }
 
 void CellGrid::Sample(RefinedCells &cells, std::size_t cell, std::vector<double> &samples) const {

@@ -74,7 +74,7 @@ private:
     };
 
     int add(Shape const &shape, int numSteps, Source source);
-    Shape getChild(Shape const &shape, int child) const;
+    static Shape getChild(Shape const &shape, int child);
     void sampleByCorners(RefinedCells &cells, std::size_t cell, std::vector<double> &samples) const;
     CellPlan const &getPlan(bool isInLattice);
     void measure(std::vector<double> const &samples, Cell const &cell,
