@@ -150,7 +150,7 @@ private:
             if (!isRestFlat(ear)) {
                 return ear;
             }
-            // What is cut later shortens the line, and leaves a line.
+            // Later cuts shorten the line, and leave a line.
             _isKept[ear] = true;
             setQuality(ear, 0);
         }
@@ -294,7 +294,7 @@ void LevelTessellation::initialize(Parameterization const &parameterization, int
     _cellPlans = std::make_shared<LazyCellPlans>();
 }
 
-// Of faces that are in no lattice and of those that are, each of points and of derivatives.
+// For faces outside and inside lattices, each for points and for derivatives.
 struct LevelTessellation::LazyCellPlans {
     std::once_flag once[2][2];
     std::unique_ptr<internal::CellPlan const> plans[2][2];
@@ -435,7 +435,7 @@ void LevelTessellation::setCells(CellMesh const &mesh) {
     setFacets(mesh, setPlaces(mesh, order));
 }
 
-// What the polygons of a section have: the mesh has more beside it.
+// Sets the places of the polygons of a section: the mesh has more places beside it.
 void LevelTessellation::setSection(CellMesh const &mesh, internal::FaceSections const &sections) {
     std::vector<int> const polygon = sections.GetPolygon(_section->number);
     std::vector<int> order;
@@ -446,7 +446,7 @@ void LevelTessellation::setSection(CellMesh const &mesh, internal::FaceSections 
         int const first = int(order.size());
         _firstEdgeCoords.push_back(first);
         order.push_back(mesh.Find(start.sector, {start.a, start.b}));
-        // Of two vertices in different sectors, one lies on the line between these.
+        // If two vertices are in different sectors, one lies on the line between these.
         int const size = GetFaceSize();
         if (start.sector == end.sector) {
             mesh.AppendBetween(start.sector, {start.a, start.b}, {end.a, end.b}, order);
@@ -503,7 +503,7 @@ void LevelTessellation::setFacets(CellMesh const &mesh, std::vector<int> const &
         _firstFacetIndices.push_back(int(_facetIndices.size()));
         _facetLevels.push_back(level);
     };
-    // What Euler says of triangles; quads and polygons are fewer.
+    // By Euler's formula; quads and polygons are fewer.
     std::size_t const numTriangles =
         2 * std::size_t(GetNumCoords()) - std::size_t(GetNumBoundaryCoords()) - 2;
     if (areTooMany(double(numTriangles))) {

@@ -288,7 +288,7 @@ bool PatchStream<REAL>::isCut(Index face, std::vector<int> const &levels) const 
     return _forest ? _plans->IsCut(_forest->GetTree(face)) : _plans->IsCut(levels);
 }
 
-// Those of a face that comes in sections.
+// The sections of a face that is cut.
 template <typename REAL>
 std::unique_ptr<internal::FaceSections const> PatchStream<REAL>::makeSections(Index face) const {
     using internal::FaceSections;
@@ -433,7 +433,7 @@ LevelTessellation PatchStream<REAL>::MakeTessellation(Index face) const {
                              levels.data(), _options.GetTessellationOptions());
 }
 
-// Of several faces that are wrong, the first is told of, whoever finds it.
+// The status names the first wrong face, whichever thread finds it.
 template <typename REAL>
 CallStatus PatchStream<REAL>::checkRange(Index beginFace, Index endFace, bool *arePlansKept) const {
     FarExt::TopologyLevel const &base = _factory.GetLevel();

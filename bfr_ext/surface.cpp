@@ -278,7 +278,7 @@ template <typename REAL>
 template <typename FUNCTION>
 void Surface<REAL>::useBorder(REAL const controlPoints[], PointDescriptor const &pointDesc,
                               FUNCTION const &function) const {
-    // What it has taken of memory is kept for the next face, as below.
+    // Its memory is kept for the next face, as below.
     static thread_local internal::BorderEvaluator<REAL> border;
     auto const size = std::size_t(pointDesc.size);
     if (internal::PlainFaceType const *const plain = _type.GetPlain()) {
@@ -298,7 +298,7 @@ void Surface<REAL>::evaluate(LevelTessellation const &tessellation, REAL const c
         evaluateTree(tessellation, controlPoints, pointDesc, results, resultDesc);
         return;
     }
-    // What it has taken of memory is kept for the next face.
+    // Its memory is kept for the next face.
     static thread_local internal::PatchEvaluator<REAL> evaluator;
     internal::PlainFaceType const *const plain = _type.GetPlain();
     bool const isInLattice = _type.IsInLattice();
@@ -348,7 +348,7 @@ void Surface<REAL>::evaluateTree(LevelTessellation const &tessellation, REAL con
     auto const write = [&](int place, int kind, double const *from) {
         std::copy(from, from + length, results[kind] + std::ptrdiff_t(place) * resultDesc.stride);
     };
-    // What they have taken of memory is kept for the next face.
+    // Their memory is kept for the next face.
     static thread_local internal::RefinedCells cells;
     using Corners = std::vector<LevelTessellation::CellCorner>;
     auto const forEachCornerOf = [](int treeCell, Corners const &ofAll, auto const &function) {
@@ -445,7 +445,7 @@ void Surface<REAL>::evaluateBorder(LevelTessellation const &tessellation,
     }
 }
 
-// Those on the border of the face, to the bit as all points of the face are evaluated.
+// Points on the border of the face, with the bits that all points of the face have.
 template <typename REAL>
 void Surface<REAL>::evaluateSectionBorder(LevelTessellation const &tessellation,
                                           internal::BorderEvaluator<REAL> &evaluator, REAL p[],

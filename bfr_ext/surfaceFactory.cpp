@@ -241,7 +241,7 @@ CallStatus SurfaceFactory::init(Index face, Interpolation interpolation, int cha
     Index const levelFace = values ? values->levels[depth].valueFaces[face] : face;
     std::vector<Index> &points = surface._ownPoints;
     internal::BaseType type;
-    // What it has taken of memory is kept for the next face.
+    // Its memory is kept for the next face.
     static thread_local internal::PlainFaceGatherer gatherer;
     if (internal::PlainFaceType const *const plain =
             gatherer.Find(*_plainTypes[std::size_t(interpolation)], *_walks.begin()[channel + 1],

@@ -79,17 +79,16 @@ public:
         /// The cache that was set.
         SurfaceFactoryCache *GetExternalCache() const { return _externalCache; }
 
-        /// Sets the level whose cells are the patches that places of surfaces are evaluated by, 2 to 6: each
-        /// level has four times the patches, and about an eighth of the error.
+        /// Sets the level of the patches of Surface::Evaluate() at (u, v), 2 to 6: each level has four times the patches,
+        /// and about an eighth of the error.
         Options &SetApproxLevelSmooth(int level) {
             _approxLevelSmooth = level;
             return *this;
         }
         /// The level that was set; by default 3.
         int GetApproxLevelSmooth() const { return _approxLevelSmooth; }
-        /// Sets that of faces whose control points include a sharp or semi-sharp edge, a corner or a boundary.  Where
-        /// it differs from the smooth one, faces of both kinds agree about their edge within the error of the
-        /// coarser.
+        /// Sets this level for faces whose control points include a sharp or semi-sharp edge, a corner or a boundary.  If the
+        /// two levels differ, faces of both kinds agree about their edge within the error of the coarser one.
         Options &SetApproxLevelSharp(int level) {
             _approxLevelSharp = level;
             return *this;
@@ -97,8 +96,8 @@ public:
         /// The level that was set; by default 3.
         int GetApproxLevelSharp() const { return _approxLevelSharp; }
 
-        /// Sets the memory, in bytes, for what surfaces are made of, which is kept as long as the factory and
-        /// surfaces that it made.  What there is no memory for is found again for each surface.
+        /// Sets the memory, in bytes, that is kept for initialising surfaces of a face again.  Faces beyond it are gathered
+        /// again for each surface.
         Options &SetMemoryOfFaces(std::size_t memory) {
             _memoryOfFaces = memory;
             return *this;

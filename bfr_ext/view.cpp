@@ -343,7 +343,7 @@ private:
     RefinedCells &_cells = getCellsOfThread();
     std::vector<double> &_samples = getSamplesOfThread();
 
-    // What they have taken of memory is kept for the next face.
+    // Their memory is kept for the next face.
     static RefinedCells &getCellsOfThread() {
         static thread_local RefinedCells cells;
         return cells;

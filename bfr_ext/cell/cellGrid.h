@@ -22,28 +22,28 @@ class CellGrid {
 public:
     /// \param faceSize  of whole cells; 0: of half cells
     explicit CellGrid(int faceSize);
-    /// That of the calling thread.
+    /// The grid of the calling thread.
     static CellGrid &Get(int faceSize);
 
-    /// Without those of children.
+    /// Children of the cell, without their own.
     int GetNumChildren() const { return int(_cells[0].children.size()); }
 
     /// @name Writes the samples, three numbers each
     /// @{
 
-    /// Of a cell that is no base face.
+    /// Samples of a cell that is no base face.
     void Sample(RefinedCells &cells, std::size_t cell, std::vector<double> &samples) const;
-    /// Of a base face, whose control points are three numbers each, without gaps.
+    /// Samples of a base face, whose control points are three numbers each, without gaps.
     void Sample(CellType const &type, double const *controlPoints, RefinedCells &cells,
                 std::vector<double> &samples);
-    /// Of a plain base face that is not in a lattice.
+    /// Samples of a plain base face that is not in a lattice.
     void Sample(PlainFaceType const &type, double const *controlPoints, RefinedCells &cells,
                 std::vector<double> &samples);
     /// @}
 
     /// Measures the cell, but where it faces.
     void Measure(std::vector<double> const &samples, CellMeasures &cell) const;
-    /// \brief The same of its children, of which there are GetNumChildren(), from the measures of the cell.
+    /// \brief Measures the GetNumChildren() children, given the measures of the cell.
     ///
     /// \param isSharp  whether something sharp is near
     void MeasureChildren(std::vector<double> const &samples, CellMeasures const &cell, bool isSharp,
@@ -60,7 +60,7 @@ private:
         std::vector<int> children; // in the grid
         double factor;             // of the range of heights
     };
-    // The cell two steps on that a sample is taken from, if it is not taken by a matrix.
+    // A cell two steps on, whose corner a sample is where no matrix makes it.
     struct Source {
         int child;
         int grandchild;

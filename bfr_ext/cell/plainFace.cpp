@@ -79,7 +79,7 @@ bool PlainFaceType::HasKey(PlainFaceKey const &key) const {
 // A vertex has its neighbours in the patch.
 static_assert(PlainFaceKey::kMaxVerts <= InnerRings::kMaxFaces);
 
-// Of threads that do so at once the first one makes it for all.
+// If several threads do so at once, the first one makes it for all.
 FaceRings const &PlainFaceType::makeRings() const {
     auto rings = std::make_unique<FaceRings const>(makeCell(false),
                                                    _types._types.GetRingCells(_types._rules));

@@ -15,7 +15,7 @@
 
 namespace OpenSubdivHex::BfrExt::internal {
 
-/// \brief What a plain base face has in its patch, in a few bytes: the size of the face, the numbers of
+/// \brief Describes the patch of a plain base face in a few bytes: the size of the face, the numbers of
 /// faces at its vertices and at their neighbours, in the order of the patch, and where these faces are
 /// not all of one size, their sizes.
 ///
@@ -61,7 +61,7 @@ public:
     int GetNumPoints() const { return _numVerts + int(_points.size()); }
     /// Those behind the vertices whose faces are all there.
     std::vector<Point> const &GetPoints() const { return _points; }
-    /// What evaluates them.
+    /// The type that evaluates the points, made on demand.
     CellType const &Get() const {
         CellType const *const type = _type.load(std::memory_order_acquire);
         return type ? *type : make();
