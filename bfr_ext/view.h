@@ -13,7 +13,7 @@
 namespace OpenSubdivHex::BfrExt {
 
 namespace internal {
-class RefinedCells;
+class BaseFace;
 class ViewGeometry;
 struct FaceMeasures;
 } // namespace internal
@@ -47,9 +47,10 @@ enum class CellVisibility : unsigned char {
 /// \endcode
 ///
 /// **Flatness.**  A cell is refined until its facets are closer to the surface than some pixels.  That is
-/// estimated: the surface is known at the corners of the cells two steps on, and the range of the heights of these
-/// over the plane of the cell's corners, an eighth longer for what lies between, is taken for the distance.  It
-/// is seen at the least depth, and furthest from the axis, that the box of the control points has in the picture.
+/// estimated: the surface is known at the corners of the cells one or two steps on, and the range of the heights of
+/// these over the plane of the cell's corners, some more for what lies between, is taken for the distance.  Where nothing
+/// sharp is near, every other level is expected to have a quarter of it.  It is seen at the least depth, and furthest from
+/// the axis, that a ball around the cell has in the picture.
 /// Sharp edges and boundaries, whose curve may bend in the plane of a cell, get points of their own
 /// (MakeEdge()).
 ///
@@ -61,11 +62,12 @@ enum class CellVisibility : unsigned char {
 /// **Lengths.**  A cell can be refined, too, until its sides are shorter than some pixels.
 ///
 /// **Culling** leaves cells as they are which are not seen: meshes stay closed, and what is culled is coarse.  A
-/// cell is outside of the picture if the box of its control points is on the outer side of one of the planes through its
-/// sides, or behind the eye: so is their hull, and with it the surface.  A cell faces away if (Du x Dv) . (eye - p) < 0
-/// for all its points p.  That is estimated, as flatness is: from the polygons of the cells two steps on, whose normals
-/// are taken to spread, and whose corners to lie, twice as far.  A part of a sharp edge or boundary is outside as a
-/// cell is, by the box of the points that its curve depends on.  It is never taken for one that faces away.
+/// face is outside of the picture if its control points are on the outer side of one of the planes through its
+/// sides, or behind the eye: so is their hull, and with it the surface.  A cell of later levels is outside if a ball around it
+/// is, and faces away if (Du x Dv) . (eye - p) < 0 for all its points p.  Both are estimated: corners of the cells one or
+/// two steps on are taken to lie in the ball, and the normals of the polygons there to spread twice as far.  A part of a
+/// sharp edge or boundary is outside as a face is, by the points that its curve depends on.  Whole faces and sharp edges are
+/// never taken for what faces away.
 ///
 /// **Animation.**  Given the tree of the last frame, a cell that is refined there stays refined until the
 /// error is below a fraction of what is allowed, so that nothing flickers; and so do sharp edges and
@@ -218,12 +220,9 @@ private:
     template <typename REAL>
     class FaceSurface;
 
-    template <typename REAL>
-    static void setBase(Surface<REAL> const &surface, REAL const *controlPoints,
-                        std::ptrdiff_t stride, internal::RefinedCells &cells);
-    CellTree makeTree(int faceSize, std::function<void(internal::RefinedCells &)> const &setBase,
-                      internal::FaceMeasures &measures, CellTree const *previous,
-                      std::vector<CellVisibility> *visibility) const;
+    void refine(CellTree &tree, std::function<internal::BaseFace const &()> const &getBase,
+                internal::FaceMeasures &measures, CellTree const *previous,
+                std::vector<CellVisibility> *visibility) const;
     template <typename REAL>
     CellForest makeForest(SurfaceFactory const &factory, ViewBounds *bounds, REAL const *meshPoints,
                           std::ptrdiff_t stride, CellForest const *previous, Counts *counts) const;

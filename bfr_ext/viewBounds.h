@@ -24,12 +24,12 @@ struct MeshMeasures;
 ///     BfrExt::CellForest const forest = view.MakeForest(bounds, positions, 3); // each frame
 /// \endcode
 ///
-/// Flatness, boxes and directions of cells take most of the time of View::MakeForest().  They are kept by base face with the
+/// Flatness, places and directions of cells take most of the time of View::MakeForest().  They are kept by base face with the
 /// positions that they were measured for; where positions have changed, they are measured again.  Forests are the same, to
 /// the last cell, with and without.
 ///
 /// **Memory** is what Options::SetMaxMemory() says, and three doubles for each vertex of the mesh.  Each
-/// cell that a view asked for takes about 80 bytes; for culling, 80 more.  What has no room is found anew by
+/// cell that a view asked for takes about 64 bytes; for culling, 72 more.  What has no room is found anew by
 /// each view.  Besides there are the tessellations of the last PatchStream of a forest, as far as that keeps
 /// them, for those of the next forest.
 ///

@@ -82,6 +82,33 @@ public:
     static constexpr int kCornerChildren[4] = {3, 1, 2, 3};
     static constexpr int kCornersOfChildren[4] = {1, 0, 0, 0};
 
+    /// @name Corners in any coordinates in which lines are straight, two numbers each
+    /// @{
+
+    /// Of the half cell that a step makes at the edge of a sector, of a whole cell whose corners are so far from the
+    /// centre.
+    template <typename PLACE, typename SCALE>
+    static std::array<PLACE, 4> GetCornersAtEdge(SCALE scale) {
+        SCALE const half = scale / 2;
+        return {{{scale, 0}, {0, scale}, {0, half}, {half, 0}}};
+    }
+    /// Of a child of a half cell.
+    template <typename PLACE>
+    static std::array<PLACE, 4> GetCornersOfChild(std::array<PLACE, 4> const &corners,
+                                                  std::size_t child) {
+        auto const getMiddle = [](PLACE const &p, PLACE const &q) {
+            return PLACE{(p[0] + q[0]) / 2, (p[1] + q[1]) / 2};
+        };
+        PLACE const middle = getMiddle(corners[0], corners[1]);
+        auto const getInner = [&](std::size_t i) { return getMiddle(corners[i], middle); };
+        if (child == 0) {
+            return {{getInner(0), getInner(1), getInner(2), getInner(3)}};
+        }
+        std::size_t const next = (child + 1) % 4;
+        return {{corners[child], corners[next], getInner(next), getInner(child)}};
+    }
+    /// @}
+
     /// How much the corners weigh in the bilinear interpolation between them.
     static std::array<double, 4> GetCornerWeights(Pair const &point) {
         double const t = 2 * point[1];

@@ -375,6 +375,13 @@ std::vector<REAL> &PatchEvaluator<REAL>::getPoints(std::size_t place, std::size_
     return points;
 }
 
+template <typename REAL>
+PlaceMatrix<REAL> const &GetLeafMatrix(CellType const &type, LeafPlaces const &places) {
+    return getPointMatrices<REAL>({type, nullptr, places})[0];
+}
+
+template PlaceMatrix<double> const &GetLeafMatrix(CellType const &, LeafPlaces const &);
+
 template class PatchEvaluator<float>;
 template class PatchEvaluator<double>;
 

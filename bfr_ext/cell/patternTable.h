@@ -31,7 +31,6 @@ enum class PatternOf {
     ChildCorner,
     RingCell,
     RingItem,
-    SurfaceSamples,
     SecondDerivatives,
     PatchPoints
 };
