@@ -12,8 +12,6 @@
 
 namespace OpenSubdivHex::BfrExt {
 
-class PatchNumbering;
-
 namespace internal {
 class FaceSections;
 class PatchPlans;
@@ -238,6 +236,31 @@ public:
     /// The tessellation of a section, 0 ... GetNumSections(face) - 1, as the patches of the face have it.
     LevelTessellation MakeTessellation(Index face, int section) const;
 
+    /// Takes the face and the tessellation of a patch, as a sink takes a patch.
+    using TessellationSink = std::function<bool(Index face, LevelTessellation const &tessellation)>;
+    /// \brief Hands out the tessellations of all patches, as Run() makes them, without points: for whoever needs
+    /// to know what patches there will be.
+    ///
+    /// \return  as that of Run()
+    bool RunTessellations(TessellationSink const &sink, FarExt::CallStatus *status = nullptr) const;
+
+    /// \brief The sections of a face, as polygons in it.
+    ///
+    /// A *corner* is a vertex of one of these, in the order of the boundary of the section's tessellation
+    /// (LevelTessellation::GetVertexPlace()); where sections meet, corners of theirs have the same vertex.
+    struct SectionPolygons {
+        std::vector<int> firstCorners; ///< by section; then their end
+        std::vector<int> vertices;     ///< by corner
+        /// By vertex, on which edge of the face it lies, a vertex of the face on the one that begins there; -1:
+        /// inside.
+        std::vector<int> edges;
+        /// By vertex on an edge, which of the points is there that LevelTessellation::GetEdgeCoords() of the whole
+        /// face would have; -1: that of the face's vertex.
+        std::vector<int> edgePoints;
+    };
+    /// Those of a face for which GetNumSections() gives more than 1; of others none.
+    SectionPolygons GetSectionPolygons(Index face) const;
+
     /// The factory that was given.
     SurfaceFactory const &GetFactory() const { return _factory; }
     /// The levels that were given; with a forest: 0.
@@ -248,7 +271,7 @@ public:
     Options const &GetOptions() const { return _options; }
 
 private:
-    friend class PatchNumbering;
+    class TessellationFinder;
     class VertexPoints;
     class Worker;
     struct Batch;
@@ -264,6 +287,9 @@ private:
     bool isCut(Index face, std::vector<int> const &levels) const;
     std::unique_ptr<internal::FaceSections const> makeSections(Index face) const;
     Index takeFaces(Index beginFace, Index endFace, Batch &batch) const;
+    template <typename MAKE>
+    bool runWorkers(Index beginFace, Index endFace, bool arePlansKept, MAKE const &makeWorker,
+                    FarExt::CallStatus &status) const;
 
     SurfaceFactory const &_factory;
     PatchLevels const _levels;

@@ -20,12 +20,12 @@ enum class Interpolation;
 namespace OpenSubdivHex::BfrExt {
 
 namespace internal {
+class CellType;
 class CellTypes;
 class FaceWalk;
 template <typename TYPE>
 class KeptFaces;
 class PlainFaceTypes;
-class StreamTypes;
 } // namespace internal
 
 /// \brief Makes the surfaces of base faces, as Bfr::RefinerSurfaceFactory.
@@ -83,17 +83,16 @@ public:
         /// The cache that was set.
         SurfaceFactoryCache *GetExternalCache() const { return _externalCache; }
 
-        /// Sets the level whose cells are the patches that places of surfaces are evaluated by, 2 to 6: each
-        /// level has four times the patches, and about an eighth of the error.
+        /// Sets the level of the patches of Surface::Evaluate() at (u, v), 2 to 6: each level has four times the patches,
+        /// and about an eighth of the error.
         Options &SetApproxLevelSmooth(int level) {
             _approxLevelSmooth = level;
             return *this;
         }
         /// The level that was set; by default 3.
         int GetApproxLevelSmooth() const { return _approxLevelSmooth; }
-        /// Sets that of faces whose control points include a sharp or semi-sharp edge, a corner or a boundary.  Where
-        /// it differs from the smooth one, faces of both kinds agree about their edge within the error of the
-        /// coarser.
+        /// Sets this level for faces whose control points include a sharp or semi-sharp edge, a corner or a boundary.  If the
+        /// two levels differ, faces of both kinds agree about their edge within the error of the coarser one.
         Options &SetApproxLevelSharp(int level) {
             _approxLevelSharp = level;
             return *this;
@@ -101,8 +100,8 @@ public:
         /// The level that was set; by default 3.
         int GetApproxLevelSharp() const { return _approxLevelSharp; }
 
-        /// Sets the memory, in bytes, for what surfaces are made of, which is kept as long as the factory and
-        /// surfaces that it made.  What there is no memory for is found again for each surface.
+        /// Sets the memory, in bytes, that is kept for initialising surfaces of a face again.  Faces beyond it are gathered
+        /// again for each surface.
         Options &SetMemoryOfFaces(std::size_t memory) {
             _memoryOfFaces = memory;
             return *this;
@@ -131,6 +130,10 @@ public:
                                                   FarExt::CallStatus *status = nullptr) {
         return Create(refiner, Options(), status);
     }
+    /// \brief One of the same mesh with other options, which need not look at the mesh again.
+    ///
+    /// Its refiner must live as long; this factory need not.
+    std::unique_ptr<SurfaceFactory> CreateWith(Options options) const;
     ~SurfaceFactory();
 
     SurfaceFactory(SurfaceFactory const &) = delete;
@@ -159,6 +162,8 @@ public:
     ///                a face with more than 1,024 vertices.  At a non-manifold vertex that is a corner for
     ///                ever, as a pole that faces name twice, the faces of each fan count by themselves, up to 4,096
     bool FaceHasLimitSurface(Index face, FarExt::CallStatus *status = nullptr) const;
+    /// The same but for vertices of many faces, whose limits take long to find.
+    FarExt::CallStatus CheckFace(Index face) const;
     /// The parameterization of a face, which is in range.
     Parameterization GetFaceParameterization(Index face) const;
 
@@ -233,35 +238,38 @@ public:
     }
     /// @}
 
-private:
+    /// \brief Makes any of these, without telling an error callback where the face has none.
+    ///
+    /// \param face           whose surface it is
+    /// \param interpolation  how the data are refined
+    /// \param channel        of face-varying data, in range; -1: data of vertices
+    /// \param surface        is invalid on failure
+    /// \param isKept         whether what the surface is made of may be kept for the next one of the face
     template <typename REAL>
-    friend class PatchStream;
-    friend class View;
-    friend class internal::StreamTypes;
+    FarExt::CallStatus TryInit(Index face, FarExt::Interpolation interpolation, int channel,
+                               Surface<REAL> &surface, bool isKept = true) const;
+
+private:
+    struct FaceMaker;
 
     SurfaceFactory(FarExt::TopologyRefiner const &refiner, Options options);
-    // One with other options, to which this mesh need not be looked at again.
     SurfaceFactory(SurfaceFactory const &other, Options options);
 
     void setTypes();
     int getPatchLevel(internal::BaseType const &type) const;
     bool hasRefinedAgain() const;
     FarExt::CallStatus checkIsFace(Index face) const;
-    FarExt::CallStatus checkFace(Index face) const;
     FarExt::CallStatus checkCrowd(Index face, int channel, Index levelFace) const;
     internal::CellType const *findType(int channel, Index levelFace, Index face,
                                        FarExt::Interpolation interpolation,
                                        std::vector<Index> &points,
                                        FarExt::CallStatus &status) const;
-    // With the causes of the public functions, which report them; a channel is in range, -1: none.
-    // Nothing is kept.
+    FarExt::CallStatus makeFace(Index face, FarExt::Interpolation interpolation, int channel,
+                                FaceMaker &maker,
+                                internal::KeptFace<internal::BaseType> const *&made) const;
     template <typename REAL>
-    FarExt::CallStatus init(Index face, FarExt::Interpolation interpolation, int channel,
-                            Surface<REAL> &surface) const;
-    // Overload with what is kept.
-    template <typename REAL>
-    FarExt::CallStatus initKept(Index face, FarExt::Interpolation interpolation, int channel,
-                                Surface<REAL> &surface) const;
+    void set(internal::KeptFace<internal::BaseType> const &face, bool isKept,
+             Surface<REAL> &surface) const;
 
     FarExt::TopologyRefiner const &_refiner;
     FarExt::TopologyLevel const _level;
@@ -271,8 +279,7 @@ private:
     std::vector<std::shared_ptr<internal::FaceWalk>> _walks; // of the mesh, and of each channel
     std::array<internal::PlainFaceTypes *, 2> _plainTypes{}; // by interpolation
     // The faces that are kept: of the mesh, by interpolation, and then of each channel.
-    using KeptFaces = internal::KeptFaces<internal::BaseType>;
-    KeptFaces *_kept = nullptr;
+    internal::KeptFaces<internal::BaseType> *_kept = nullptr;
     std::shared_ptr<void const> _owner; // of these and of the types, as surfaces have it
 };
 

@@ -40,9 +40,10 @@ public:
     /// Types that are there: those of faces, and those of the cells that evaluation went through.
     std::size_t GetNumTypes() const;
 
-private:
-    friend class SurfaceFactory;
+    /// The types, for the classes of this library.
+    std::shared_ptr<internal::CellTypes> const &GetTypes() const { return _types; }
 
+private:
     std::shared_ptr<internal::CellTypes> _types;
 };
 

@@ -38,14 +38,14 @@ public:
         int fvarChannel = 0;            ///< of face-varying points
     };
 
-    /// \brief Finds the surfaces of places.
+    /// \brief Finds the surfaces of the points.
     ///
     /// \param factory    which need not live on
     /// \param numPlaces  how many there are, 0 or more
     /// \param faces      by place, a face of factory.GetLevel()
     /// \param uvs        by place, u and v in that face
     /// \param options    what points are evaluated
-    /// \param status     of a face without a surface, as SurfaceFactory has it: none of the places is evaluated then
+    /// \param status     names a face without a surface; no point is evaluated then
     /// \return           null on failure
     static std::unique_ptr<SurfacePlaces> Create(SurfaceFactory const &factory, int numPlaces,
                                                  Index const faces[], REAL const uvs[],
@@ -58,10 +58,10 @@ public:
         return Create(factory, numPlaces, faces, uvs, Options(), status);
     }
 
-    /// How many places there are.
+    /// Number of points.
     int GetNumPlaces() const { return int(_places.size()); }
 
-    /// \brief Writes the points at all places, in the order in which these were given.
+    /// \brief Writes the points, in the order of Create().
     ///
     /// \param meshPoints     of factory.GetLevel(): of its vertices, or values of the channel
     /// \param meshPointDesc  the size of a point, and the distance from one to the next

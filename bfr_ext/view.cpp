@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "view.h"
 
+#include "cell/baseType.h"
 #include "cell/cellMeasures.h"
-#include "cell/cellType.h"
 
 #include "far_ext/vtr/hierarchy.h"
 #include "far_ext/vtr/parallel.h"
@@ -89,7 +89,7 @@ public:
         if (!(leastDepth > 0)) {
             return _pixelsAtDepth1 * byDistance;
         }
-        // What each axis adds to the depth and to the square of the distance, at either end.
+        // Contributions of each axis to the depth and to the square of the distance, at either end.
         Vector3 depths[2];
         Vector3 squares[2];
         for (std::size_t k = 0; k < 3; ++k) {
@@ -131,7 +131,7 @@ private:
 
 namespace {
 
-/// That of a cell's points.
+/// The box of a cell's points.
 Box getBox(CellValues const &values) {
     Box box;
     for (int i = 0; i < values.GetNumPoints(); ++i) {
@@ -339,7 +339,7 @@ private:
     std::vector<double> _corners; // of the surface, of the cell that is looked at
     Flatness _flatness;
 
-    // What they have taken of memory is kept for the next face.
+    // Their memory is kept for the next face.
     static RefinedCells &getCellsOfThread() {
         static thread_local RefinedCells cells;
         return cells;
@@ -465,10 +465,10 @@ void View::setBase(Surface<REAL> const &surface, REAL const *controlPoints, std:
                    internal::RefinedCells &cells) {
     std::vector<double> const points =
         gather(controlPoints, stride, std::size_t(surface.GetNumControlPoints()));
-    if (internal::PlainFaceType const *const plain = surface._type.GetPlain()) {
+    if (internal::PlainFaceType const *const plain = surface.GetFace().type.GetPlain()) {
         cells.SetBase(*plain, points.data(), 3);
     } else {
-        cells.SetBase(*surface._type, points.data(), 3);
+        cells.SetBase(*surface.GetFace().type, points.data(), 3);
     }
 }
 
@@ -499,7 +499,7 @@ Polyline View::MakeEdge(Surface<REAL> const &surface, int edge, REAL const contr
         return Polyline();
     }
     internal::CellType::BorderItem const &item =
-        surface._type->GetBorderItem(surface.getTurns(), std::size_t(edge));
+        surface.GetFace().type->GetBorderItem(surface.GetFace().GetTurns(), std::size_t(edge));
     std::vector<double> points;
     for (int const point : item.points) {
         REAL const *const from = controlPoints + std::ptrdiff_t(point) * pointDesc.stride;
@@ -559,7 +559,7 @@ public:
         if (face != _face) {
             _face = face;
             _surface.Clear();
-            if (_factory.initKept(face, FarExt::Interpolation::Vertex, -1, _surface).IsOk()) {
+            if (_factory.TryInit(face, FarExt::Interpolation::Vertex, -1, _surface).IsOk()) {
                 _points.resize(3 * std::size_t(_surface.GetNumControlPoints()));
                 _surface.GatherControlPoints(_meshPoints, {3, int(_stride)}, _points.data(), 3);
             }

@@ -132,13 +132,13 @@ public:
 
     /// \brief The view of a camera.
     ///
-    /// The view is invalid if eye and target are one place, or nothing is up, also where the squares of
-    /// their distance or of what is up are beyond double precision; if a number is not finite, or an angle,
-    /// resolution or option is not in its range; and if both numbers of pixels are 0.  It then refines
-    /// nothing: trees have one cell, and polylines one segment.
+    /// The view is invalid, and refines nothing (trees have one cell, polylines one segment), if
+    ///  - eye and target are equal, or \c up is zero, also where squares are beyond double precision,
+    ///  - a number is not finite, or an angle, resolution or option is out of range,
+    ///  - both numbers of pixels are 0.
     ///
-    /// \param camera   where it is, and its picture
-    /// \param options  what is to be reached
+    /// \param camera   the camera
+    /// \param options  how fine cells become
     explicit View(Camera const &camera, Options options = Options());
 
     /// Whether the arguments were as they have to be.

@@ -176,7 +176,7 @@ public:
     /// A face or a patch.
     using Index = Far::Index;
 
-    /// A place in a patch.
+    /// (s, t) in a patch.
     struct Place {
         Index patch; ///< INDEX_INVALID: none
         double s;    ///< from corner 0 to corner 1, from 0 to 1
@@ -202,10 +202,10 @@ public:
     std::array<double, 8> const &GetCoords(Index patch) const {
         return _patches[std::size_t(patch)].coords;
     }
-    /// The place in the face of one in a patch.
+    /// (u, v) in the face, of (s, t) in a patch.
     void GetFacePlace(Place const &place, double *u, double *v) const;
 
-    /// \brief The patch that has a place of a face of the surface level, and where.
+    /// \brief The patch, and (s, t) in it, of (u, v) in a face of the surface level.
     ///
     /// A place between patches is found in one of them; one outside of the face, in the patch
     /// nearest to it in its direction from the centre, with s or t outside of 0 to 1.

@@ -132,7 +132,7 @@ std::unique_ptr<WritableTable<REAL>> buildTable(SymbolicTable &symbolic) {
     return table;
 }
 
-// The same of kept rows.
+// Overload for kept rows.
 template <typename REAL>
 std::unique_ptr<WritableTable<REAL>> buildTable(SymbolicTable const &symbolic,
                                                 KeptRows const &kept) {

@@ -248,7 +248,7 @@ public:
     /// Whether the halves of the face, a hexagon then, lie in two faces of level 0.
     bool IsFaceBaseSplit(Index f) const;
 
-    /// \brief The places of vertices of the face in a plane of its base face, in which pictures can be drawn.
+    /// \brief Coordinates of the face's vertices in a plane of its base face, for textures and pictures.
     ///
     /// The plane has edge 0 of the base face from (0, 0) to (1, 0), and the face to its left: a quad is the unit
     /// square, a triangle has its third vertex at (0, 1), and others are regular polygons.  V-vertices stay, and
@@ -275,8 +275,7 @@ public:
     /// \return      INDEX_INVALID before the surface level, and where not all steps behind it are
     ///              hexagonal
     Index GetFaceSurfaceFace(Index f, int half = 0) const;
-    /// \brief The places of the face's vertices in that face, by (u, v) of its parameterization: where its surface
-    /// has their limits.
+    /// \brief (u, v) of the face's vertices in that face: where its surface has their limits.
     ///
     /// The coordinates are those of Bfr::Parameterization.  In triangles and quads they equal GetFaceBaseCoords() in that
     /// face.  Other faces have a sub-face for each corner, the kite of the corner, the middles of two edges and the centre,

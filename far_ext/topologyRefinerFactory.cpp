@@ -94,7 +94,7 @@ bool RefinerReader::readEdge(Index edge, EdgeSides &sides) const {
         if (!isSide(edge, faces[i], locals[i])) {
             return false;
         }
-        // Of two sides the first runs from the first vertex to the second.
+        // The first of two sides runs from the first vertex to the second.
         Index const corner = _level.faceFirstCorner[faces[i]] + locals[i];
         sides.corners[numFaces == 2 && _level.faceVerts[corner] == verts[1]] = corner;
     }

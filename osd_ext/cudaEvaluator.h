@@ -24,6 +24,11 @@ using CudaStream = CUstream_st *;
 
 /// \brief Floats on the current CUDA device: Osd::CudaVertexBuffer for an OpenSubdiv without CUDA.
 ///
+/// \code
+///     std::unique_ptr<OsdExt::CudaVertexBuffer> const buffer(OsdExt::CudaVertexBuffer::Create(3, numVertices));
+///     buffer->UpdateData(positions, 0, numVertices);
+/// \endcode
+///
 /// A device context is a cudaStream_t, null for the default one.  Memory that is not there throws
 /// std::bad_alloc, any other error std::runtime_error with its name.
 class OPENSUBDIVHEX_API CudaVertexBuffer {

@@ -46,8 +46,12 @@ private:
     friend struct internal::PatchTypes;
 };
 
-/// \brief The functions of CpuEvaluator and ParallelEvaluator that evaluate patches, with the
+/// \brief Functions of CpuEvaluator and ParallelEvaluator that evaluate patches, with the
 /// signatures of Osd::CpuEvaluator.
+///
+/// \code
+///     OsdExt::CpuEvaluator::EvalPatches(points, desc, dst, desc, numCoords, coords, cpuPatchTable);
+/// \endcode
 ///
 /// **Tables.** Osd::CpuPatchTable of any Far::PatchTable, of this library or of OpenSubdiv, or a class with
 /// its functions.  Patches of the types REGULAR, GREGORY_BASIS and QUADS, which those of Catmull-Clark and
@@ -79,7 +83,7 @@ public:
     /// \param instance,deviceContext   not used
     /// @{
 
-    /// Evaluates vertex data at places of patches.
+    /// Evaluates vertex data at (patch, s, t).
     template <class SRC, class DST, class COORDS, class TABLE>
     static bool EvalPatches(SRC *srcBuffer, Desc const &srcDesc, DST *dstBuffer,
                             Desc const &dstDesc, int numPatchCoords, COORDS *patchCoords,
@@ -114,7 +118,7 @@ public:
                     numPatchCoords, patchCoords, getVertexPatches(patchTable));
     }
 
-    /// Evaluates varying data at places of patches.
+    /// Evaluates varying data at (patch, s, t).
     template <class SRC, class DST, class COORDS, class TABLE>
     static bool EvalPatchesVarying(SRC *srcBuffer, Desc const &srcDesc, DST *dstBuffer,
                                    Desc const &dstDesc, int numPatchCoords, COORDS *patchCoords,
@@ -136,7 +140,7 @@ public:
                     numPatchCoords, patchCoords, getVaryingPatches(patchTable));
     }
 
-    /// Evaluates a face-varying channel at places of patches.
+    /// Evaluates a face-varying channel at (patch, s, t).
     template <class SRC, class DST, class COORDS, class TABLE>
     static bool EvalPatchesFaceVarying(SRC *srcBuffer, Desc const &srcDesc, DST *dstBuffer,
                                        Desc const &dstDesc, int numPatchCoords, COORDS *patchCoords,
@@ -162,7 +166,7 @@ public:
 
     /// @name With pointers
     /// \param src,dst,...       without the offset of their descriptors, which is added
-    /// \param patchCoords       the places; handles have arrays and patches
+    /// \param patchCoords       (s, t), and handles, which have arrays and patches
     /// \param patchArrays       by array
     /// \param patchIndexBuffer  of source elements, of all patches
     /// \param patchParamBuffer  by patch
@@ -171,7 +175,7 @@ public:
     // clang-tidy does not see that pointers in braces are copied.
     // NOLINTBEGIN(readability-non-const-parameter)
 
-    /// Evaluates data at places of patches.
+    /// Evaluates data at (patch, s, t).
     static bool EvalPatches(float const *src, Desc const &srcDesc, float *dst, Desc const &dstDesc,
                             int numPatchCoords, Osd::PatchCoord const *patchCoords,
                             Osd::PatchArray const *patchArrays, int const *patchIndexBuffer,

@@ -87,7 +87,7 @@ float findScale(internal::Elements<float const> src, int length, Index count) {
     return isLarge ? kScaleOfLarge : 1.0f;
 }
 
-// Of elements behind one another.
+// For consecutive elements.
 void undoScale(float scale, internal::Elements<float> dst, int length, std::int64_t count) {
     if (scale != 1) {
         for (std::int64_t i = 0; i < count; ++i) {

@@ -99,6 +99,11 @@ private:
 /// \brief Functions of CpuEvaluator and ParallelEvaluator that evaluate stencils, with the signatures of
 /// Osd::CpuEvaluator, so that templates such as Osd::Mesh accept them.  PatchEvaluator has the EvalPatches functions.
 ///
+/// \code
+///     Osd::BufferDescriptor const desc(0, 3, 3); // x, y and z
+///     OsdExt::ParallelEvaluator::EvalStencils(srcBuffer, desc, dstBuffer, desc, table.get());
+/// \endcode
+///
 /// **Tables.** Any Far::StencilTable or Far::LimitStencilTable, of this library or of OpenSubdiv,
 /// or a class with their functions, and CompactStencilTable.  Offsets may be missing, as Far's
 /// option generateOffsets suggests: stencils then follow each other without gaps, and ParallelEvaluator

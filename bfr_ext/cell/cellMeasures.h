@@ -29,7 +29,7 @@ struct Box {
     Vector3 largest = {-kInfinity, -kInfinity, -kInfinity};
 };
 
-/// \brief What is known of a cell wherever it is seen from, as far as a view has asked for it.
+/// \brief Measures of a cell that do not depend on the camera, as far as views have asked for them.
 struct CellMeasures {
     Box box;                 ///< of its points
     double longestSide = -1; ///< between corners; -1: not found
@@ -127,7 +127,7 @@ struct FaceMeasures {
     std::vector<CellFacing> facings;
 };
 
-/// Those of all base faces of a mesh.  Several threads may work at different faces.
+/// The measures of all base faces of a mesh.  Several threads may work at different faces.
 struct MeshMeasures {
     explicit MeshMeasures(int numFaces) : faces(std::size_t(numFaces)) {}
 

@@ -43,7 +43,7 @@ LeafPlaces::LeafPlaces(int faceSize, int numSteps) : _faceSize(faceSize), _numSt
             add({sector, {1, 0}});
         }
         refine({-1, {{{1, 0}}}}, numSteps);
-        // Those on the sides last: tessellations have them apart, or first.
+        // Points on the sides come last: tessellations have them apart, or first.
         std::stable_partition(_places.begin(), _places.end(), [](Place const &place) {
             return place.coords[0] + place.coords[1] != 1;
         });

@@ -84,7 +84,7 @@ public:
         Pair toCoords[2];
         std::vector<CornerPlace> corners;
     };
-    /// What is to be evaluated.
+    /// Points, or derivatives.
     enum class Use { Points, Derivatives };
 
     /// \param level        that of the places, at most

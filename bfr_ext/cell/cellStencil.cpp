@@ -56,7 +56,7 @@ BasePoint makeBasePoint(POLYGON const &polygon, int sector, Pair const &coords) 
 template <typename POLYGON>
 BasePoint findBasePoint(POLYGON const &polygon, int size, double u, double v, double tolerance) {
     Pair const center = polygon.GetCenter();
-    // Of finite coordinates the products are finite.
+    // Products of finite coordinates are finite.
     double const x = std::clamp(u - center[0], -kFar, kFar);
     double const y = std::clamp(v - center[1], -kFar, kFar);
     auto const findIn = [&](int sector, BasePoint &point) {

@@ -192,7 +192,7 @@ void CellType::findDifferences(int corner, int numSteps, Vector (&result)[2]) co
         steps.push_back(&child.step);
         type = child.type;
     }
-    // Of a half cell, at an end of its long edge.
+    // For a half cell, at an end of its long edge.
     std::vector<Vector> const &points = type->GetCornerPoints();
     Vector differences[2];
     auto &[along, across] = differences;

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "facePatches.h"
 
+#include "baseType.h"
 #include "lanes.h"
 #include "placeKernel.h"
 #include "refinedCells.h"
 
-#include "bfr_ext/surface.h"
 #include "far_ext/patch/cellPatchPoints.h"
 #include "far_ext/vtr/inline.h"
 
@@ -303,7 +303,7 @@ namespace {
 template <typename TYPE, typename REAL>
 void makePoints(TYPE const &type, int faceSize, int level, REAL const *control, int size,
                 std::ptrdiff_t stride, REAL *points) {
-    // What they have taken of memory is kept for the next face.
+    // Their memory is kept for the next face.
     static thread_local RefinedCells cells;
     static thread_local std::vector<double> packed;
     packed.clear();

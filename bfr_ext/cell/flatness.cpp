@@ -9,7 +9,7 @@ namespace OpenSubdivHex::BfrExt::internal {
 
 namespace {
 
-// What lies between samples.
+// Factor for the surface between samples.
 constexpr double kFactor = 1.125;
 
 } // namespace
@@ -46,7 +46,7 @@ void Flatness::addSamples(RefinedCells &cells, std::size_t cell, int numSteps) {
         }
         std::size_t const first = cells.GetFirstChild(cell);
         int const numChildren = cells.GetNumChildren(cell);
-        // Of all children the first alone has corners that the cell has not.
+        // Only the first child has corners that the cell has not.
         double point[3];
         for (int i = 0; i < cells[first].GetType().GetNumCorners(); ++i) {
             cells.EvaluateCorner(first, i, point);

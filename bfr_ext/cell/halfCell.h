@@ -14,7 +14,7 @@ namespace OpenSubdivHex::BfrExt::internal {
 /// Two coordinates in a cell, or derivatives of these.
 using Pair = std::array<double, 2>;
 
-/// \brief What the coordinates in one cell are in terms of those in another: a linear map and a shift.
+/// \brief Map of coordinates in one cell to those in another: linear, and a shift.
 struct CellMap {
     Pair Apply(Pair const &p) const {
         return {shift[0] + (rows[0][0] * p[0] + rows[0][1] * p[1]),

@@ -35,7 +35,7 @@ public:
 
     PatchCorners const &GetCorners() const { return _corners; }
 
-    // Of a vertex, from the corners there.
+    // The weights of a vertex, from the corners there.
     Weights const &FindVertex(std::vector<int> const &ring) {
         return find(Kind::Vertex, getKey(ring),
                     [&](Refinement const &refinement, RefinementRules const &rules) {
@@ -75,7 +75,7 @@ public:
 private:
     enum class Kind { Vertex, FVertex, Face, Hexagon };
 
-    // What masks around a vertex depend on.
+    // Key of the masks around a vertex.
     std::vector<int> getKey(std::vector<int> const &ring) const {
         int const numFaces = int(ring.size());
         return {numFaces, int(FarExt::internal::FindFacesAround(numFaces, [&](int i) {

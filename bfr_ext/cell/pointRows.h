@@ -12,7 +12,7 @@ namespace OpenSubdivHex::BfrExt::internal {
 /// weights for each.
 class PointRows {
 public:
-    /// Of the ancestor itself.
+    /// The rows of the ancestor itself.
     explicit PointRows(CellType const &type)
         : PointRows(std::size_t(type.GetNumPoints()), std::size_t(type.GetNumPoints())) {
         for (std::size_t i = 0; i < _numRows; ++i) {
@@ -24,7 +24,7 @@ public:
         : PointRows(type.GetStep().GetNumRows(), parent._size) {
         type.GetStep().Apply(parent._weights.data(), _paddedSize, _weights.data());
     }
-    /// Those of one child.
+    /// The rows of one child.
     PointRows(CellType::Child const &child, PointRows const &ofStep)
         : PointRows(child.step.GetNumRows(), ofStep._size) {
         child.step.CopyPoints(ofStep._weights.data(), _paddedSize, _weights.data());

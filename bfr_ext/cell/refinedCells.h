@@ -63,7 +63,7 @@ public:
     static constexpr int kFirstCommonLevel = 2;
 
 private:
-    // That of the cell that the corner is evaluated from, and which corner of that it is.
+    // The values of the cell that the corner is evaluated from, and its number there.
     CellValues const &findCorner(std::size_t cell, int &corner);
 
     struct Cell {

@@ -15,7 +15,7 @@ class SurfaceSamples {
 public:
     explicit SurfaceSamples(CellType const &type);
 
-    /// Those of a type, which are found once.
+    /// The samples of a type, which are found once.
     static SurfaceSamples const &Find(CellType const &type);
 
     /// Writes the samples, of \p size numbers each without gaps, from the points of a cell.

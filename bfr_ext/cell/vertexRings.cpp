@@ -40,7 +40,7 @@ void copyPoints(REAL const *begin, REAL const *end, REAL *to) {
 // Writes the program of the rings of a patch.
 class VertexRings::Builder {
 public:
-    // What it has taken of memory is kept for the next patch.
+    // Its memory is kept for the next patch.
     struct Scratch {
         // A point, and which of the runs it belongs to.
         struct RunPoint {

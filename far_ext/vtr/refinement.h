@@ -108,7 +108,7 @@ struct Refinement {
 void BeginRefinement(Level const &parent, LevelSizes const &sizes, bool fullTopology,
                      Refinement &refinement, Level &child);
 
-/// What the tags of levels depend on.
+/// Options that determine the tags of levels.
 struct TagOptions {
     Sdc::Options sdcOptions;
     FaceMask faceMask;

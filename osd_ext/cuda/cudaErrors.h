@@ -13,7 +13,7 @@
 
 namespace OpenSubdivHex::OsdExt::internal {
 
-/// What an error of CUDA is to users.
+/// The status of a CUDA error.
 inline FarExt::CallStatus GetCudaStatus(cudaError_t error) {
     if (error == cudaSuccess) {
         return FarExt::CallStatus();

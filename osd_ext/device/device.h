@@ -32,7 +32,7 @@ struct OPENSUBDIVHEX_API DeviceTask {
     DeviceArguments GetArguments() const;
 };
 
-/// \brief What DeviceEvaluator asks of OpenGL, of CUDA, or of whatever else runs kernels.
+/// \brief Interface of DeviceEvaluator to OpenGL, CUDA, or anything else that runs kernels.
 ///
 /// Memory that is not there throws std::bad_alloc.
 class OPENSUBDIVHEX_API Device {
@@ -74,7 +74,7 @@ public:
     virtual FarExt::CallStatus Prepare(DeviceKernel kernel, int length, int faceSize) = 0;
     /// Runs a kernel that is ready, behind all before it that wrote what Wait() stood behind.
     virtual void Run(DeviceTask const &task) = 0;
-    /// What runs afterwards sees what was written before.
+    /// Barrier: later kernels see earlier writes.
     virtual void Wait() = 0;
     /// Ends a frame: leaves the device as others expect it.
     virtual FarExt::CallStatus EndFrame() = 0;

@@ -355,7 +355,7 @@ CallStatus DeviceEvaluator::EvaluateAllLevels(Values const &src, Values const &d
     return frame.Run(*_device);
 }
 
-// What is prepared late needs the refiner as it was.
+// Late preparation needs the unchanged refiner.
 CallStatus DeviceEvaluator::checkRefiner() const {
     return _refiner.GetNumRefinements() == _numRefinements
                ? CallStatus()

@@ -248,7 +248,7 @@ bool Maker::isCirculant(FaceRule const &rule, int corner) const {
            rule.GetRow(corner) == _rules.GetCirculantRule(rule.GetSize()).GetRow(corner);
 }
 
-// Those without any corner that a run would make.
+// Faces without any corner in a run.
 std::vector<Index> Maker::findFacesInNoRun() const {
     std::vector<Index> faces;
     _rules.ForEachDenseFace(0, _level.numFaces, [&](Index face, int number) {
@@ -403,7 +403,7 @@ void Maker::planTruncation() {
 
 void Maker::Fill(std::int32_t *indices) const {
     if (_refinement.isTruncation) {
-        // Those of level 0 are the first of all.
+        // Sources in level 0 come first of all indices.
         std::copy(_truncationSources.begin(), _truncationSources.end(), indices);
         return;
     }

@@ -56,7 +56,7 @@ struct WidePacket {
                                                    Vector const &sum) {
         return MultiplyAddFrom(0, elements, weights, sum);
     }
-    /// Of elements \p first and on alone.
+    /// Only from element \p first on.
     static OPENSUBDIVHEX_INLINE Vector MultiplyAddFrom(int first, Vector const &elements,
                                                        Vector const &weights, Vector const &sum) {
         Vector result = sum;
@@ -109,7 +109,7 @@ struct NarrowPacket {
                                                    Vector const &sum) {
         return OCTET::MultiplyAdd(elements, weights, sum);
     }
-    /// Of elements \p first and on alone.
+    /// Only from element \p first on.
     static OPENSUBDIVHEX_INLINE Vector MultiplyAddFrom(int first, Vector const &elements,
                                                        Vector const &weights, Vector const &sum) {
         Vector const result = MultiplyAdd(elements, weights, sum);

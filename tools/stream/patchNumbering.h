@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-#ifndef OPENSUBDIVHEX_BFR_EXT_PATCH_NUMBERING_H
-#define OPENSUBDIVHEX_BFR_EXT_PATCH_NUMBERING_H
+#ifndef OPENSUBDIVHEX_TOOLS_PATCH_NUMBERING_H
+#define OPENSUBDIVHEX_TOOLS_PATCH_NUMBERING_H
 
-#include "patchStream.h"
+#include "bfr_ext/patchStream.h"
 
 #include <cstdint>
 #include <map>
 #include <memory>
 #include <vector>
 
-namespace OpenSubdivHex::BfrExt {
+namespace OpenSubdivHex::Tools {
 
 /// \brief Numbers of all points and facets of a stream, whoever makes its patches: what patches share
 /// has one number.
@@ -29,7 +29,7 @@ namespace OpenSubdivHex::BfrExt {
 ///
 /// It takes some numbers for each component of the base mesh, and for each section.  Nothing is changed
 /// after construction: several threads may use it.  std::bad_alloc passes through.
-class OPENSUBDIVHEX_API PatchNumbering {
+class PatchNumbering {
 public:
     /// A component of the base mesh.
     using Index = Far::Index;
@@ -41,7 +41,7 @@ public:
     ///
     /// \return  null on failure: those of PatchStream::Run() for all faces, before any patch
     template <typename REAL>
-    static std::unique_ptr<PatchNumbering> Create(PatchStream<REAL> const &stream,
+    static std::unique_ptr<PatchNumbering> Create(BfrExt::PatchStream<REAL> const &stream,
                                                   FarExt::CallStatus *status = nullptr);
 
     /// Points of all patches.
@@ -77,21 +77,23 @@ public:
     /// \param face          the base face
     /// \param tessellation  its tessellation in the stream, or that of a section
     /// \param runs          is replaced
-    void GetRuns(Index face, LevelTessellation const &tessellation, std::vector<Run> &runs) const;
+    void GetRuns(Index face, BfrExt::LevelTessellation const &tessellation,
+                 std::vector<Run> &runs) const;
     /// Writes the point of each place of a patch: tessellation.GetNumCoords() numbers.
-    void GetPoints(Index face, LevelTessellation const &tessellation, Number points[]) const;
+    void GetPoints(Index face, BfrExt::LevelTessellation const &tessellation,
+                   Number points[]) const;
 
 private:
     class SectionNumbers;
 
-    explicit PatchNumbering(SurfaceFactory const &factory) : _factory(factory) {}
+    explicit PatchNumbering(BfrExt::SurfaceFactory const &factory) : _factory(factory) {}
 
     Index findOwner(Far::ConstIndexArray faces) const;
     bool isVertexOwn(Index face, int local) const;
     Run makeEdgeRun(Index face, int local, int place, int first, int count) const;
     SectionNumbers const *findSections(Index face) const;
 
-    SurfaceFactory const &_factory;
+    BfrExt::SurfaceFactory const &_factory;
     int _maxFacetSize = 0;
     std::vector<Number> _pointOfVertex;
     std::vector<Number> _firstPointOfEdge; // by edge; then their end
@@ -101,6 +103,6 @@ private:
     std::map<Index, std::shared_ptr<SectionNumbers const>> _sections; // of faces that come in some
 };
 
-} // namespace OpenSubdivHex::BfrExt
+} // namespace OpenSubdivHex::Tools
 
 #endif

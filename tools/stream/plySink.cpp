@@ -3,10 +3,12 @@
 
 #include "far_ext/vtr/report.h"
 
+#include <algorithm>
 #include <cstring>
 #include <limits>
+#include <utility>
 
-namespace OpenSubdivHex::BfrExt {
+namespace OpenSubdivHex::Tools {
 
 using FarExt::CallStatus;
 using FarExt::StatusCode;
@@ -76,47 +78,93 @@ std::uint64_t PlySink<REAL>::GetFileSize() const {
 }
 
 template <typename REAL>
-bool PlySink<REAL>::operator()(typename PatchStream<REAL>::Patch const &patch) const {
+bool PlySink<REAL>::operator()(Patch const &patch) const {
     if (patch.pointSize != int(kPointSize)) {
         return false;
     }
-    std::vector<PatchNumbering::Run> runs;
+    Runs runs;
     _numbering.GetRuns(patch.face, patch.tessellation, runs);
-    return writePoints(patch, runs) && writeFacets(patch, runs);
+    PatchBytes ofPatch;
+    addPoints(patch, runs, ofPatch);
+    addFacets(patch, runs, ofPatch);
+    std::vector<PatchBytes> full;
+    {
+        std::lock_guard<std::mutex> const lock(_gathered->mutex);
+        _gathered->size += ofPatch.bytes.size();
+        _gathered->patches.push_back(std::move(ofPatch));
+        if (_gathered->size >= kMaxSize) {
+            full.swap(_gathered->patches);
+            _gathered->size = 0;
+        }
+    }
+    return write(full);
 }
 
 template <typename REAL>
-bool PlySink<REAL>::writePoints(typename PatchStream<REAL>::Patch const &patch,
-                                std::vector<PatchNumbering::Run> const &runs) const {
-    std::vector<REAL> reversed;
-    for (PatchNumbering::Run const &run : runs) {
-        if (!run.isOwn || run.count == 0) {
-            continue;
+bool PlySink<REAL>::Flush() const {
+    std::vector<PatchBytes> left;
+    {
+        std::lock_guard<std::mutex> const lock(_gathered->mutex);
+        left.swap(_gathered->patches);
+        _gathered->size = 0;
+    }
+    return write(left);
+}
+
+// Pieces that follow one another in the file are written together.
+template <typename REAL>
+bool PlySink<REAL>::write(std::vector<PatchBytes> const &patches) const {
+    struct Bytes {
+        std::uint64_t offset;
+        char const *begin;
+        std::size_t size;
+    };
+    std::vector<Bytes> pieces;
+    for (PatchBytes const &patch : patches) {
+        for (Piece const &piece : patch.pieces) {
+            pieces.push_back({piece.offset, patch.bytes.data() + piece.begin, piece.size});
         }
-        auto const count = std::size_t(run.count);
-        REAL const *points = patch.points + std::size_t(run.place) * kPointSize;
-        PatchNumbering::Number first = run.point;
-        if (run.step < 0) {
-            reversed.clear();
-            for (std::size_t i = count; i-- > 0;) {
-                reversed.insert(reversed.end(), points + i * kPointSize,
-                                points + (i + 1) * kPointSize);
-            }
-            points = reversed.data();
-            first -= run.count - 1;
-        }
-        if (!_write(getPointOffset(first), reinterpret_cast<char const *>(points),
-                    count * kPointSize * sizeof(REAL))) {
+    }
+    std::sort(pieces.begin(), pieces.end(),
+              [](Bytes const &a, Bytes const &b) { return a.offset < b.offset; });
+    std::vector<char> joined;
+    for (std::size_t i = 0; i < pieces.size();) {
+        std::uint64_t const offset = pieces[i].offset;
+        joined.clear();
+        do {
+            joined.insert(joined.end(), pieces[i].begin, pieces[i].begin + pieces[i].size);
+            ++i;
+        } while (i < pieces.size() && pieces[i].offset == offset + joined.size());
+        if (!_write(offset, joined.data(), joined.size())) {
             return false;
         }
     }
     return true;
 }
 
+// The points that belong to the patch.
 template <typename REAL>
-bool PlySink<REAL>::writeFacets(typename PatchStream<REAL>::Patch const &patch,
-                                std::vector<PatchNumbering::Run> const &runs) const {
-    LevelTessellation const &tessellation = patch.tessellation;
+void PlySink<REAL>::addPoints(Patch const &patch, Runs const &runs, PatchBytes &to) const {
+    constexpr std::size_t kBytesOfPoint = kPointSize * sizeof(REAL);
+    for (PatchNumbering::Run const &run : runs) {
+        if (!run.isOwn || run.count == 0) {
+            continue;
+        }
+        auto const *const points =
+            reinterpret_cast<char const *>(patch.points + std::size_t(run.place) * kPointSize);
+        auto const count = std::size_t(run.count);
+        PatchNumbering::Number const first = run.step < 0 ? run.point - run.count + 1 : run.point;
+        to.pieces.push_back({getPointOffset(first), to.bytes.size(), count * kBytesOfPoint});
+        for (std::size_t i = 0; i < count; ++i) {
+            char const *const point = points + (run.step < 0 ? count - 1 - i : i) * kBytesOfPoint;
+            to.bytes.insert(to.bytes.end(), point, point + kBytesOfPoint);
+        }
+    }
+}
+
+template <typename REAL>
+void PlySink<REAL>::addFacets(Patch const &patch, Runs const &runs, PatchBytes &to) const {
+    BfrExt::LevelTessellation const &tessellation = patch.tessellation;
     std::vector<std::int32_t> pointsOfPlaces;
     pointsOfPlaces.reserve(std::size_t(tessellation.GetNumCoords()));
     for (PatchNumbering::Run const &run : runs) {
@@ -132,27 +180,28 @@ bool PlySink<REAL>::writeFacets(typename PatchStream<REAL>::Patch const &patch,
                                         : sizes.size() * std::size_t(stride));
     tessellation.GetFacets(facets.data());
 
-    std::vector<char> bytes(sizes.size() * _countSize +
-                            std::size_t(tessellation.GetNumFacetVertices()) * kIndexSize);
-    char *to = bytes.data();
+    std::size_t const numBytes =
+        sizes.size() * _countSize + std::size_t(tessellation.GetNumFacetVertices()) * kIndexSize;
+    to.pieces.push_back(
+        {getFacetOffset(patch.face, tessellation.GetSection()), to.bytes.size(), numBytes});
+    to.bytes.resize(to.bytes.size() + numBytes);
+    char *next = to.bytes.data() + to.pieces.back().begin;
     int const *facet = facets.data();
     for (std::int32_t const size : sizes) {
         if (_countSize == 1) {
-            *to = char(size);
+            *next = char(size);
         } else {
-            std::memcpy(to, &size, kIndexSize);
+            std::memcpy(next, &size, kIndexSize);
         }
-        to += _countSize;
-        for (int i = 0; i < size; ++i, to += kIndexSize) {
-            std::memcpy(to, &pointsOfPlaces[std::size_t(facet[i])], kIndexSize);
+        next += _countSize;
+        for (int i = 0; i < size; ++i, next += kIndexSize) {
+            std::memcpy(next, &pointsOfPlaces[std::size_t(facet[i])], kIndexSize);
         }
         facet += stride == 0 ? size : stride;
     }
-    return _write(getFacetOffset(patch.face, tessellation.GetSection()), bytes.data(),
-                  bytes.size());
 }
 
 template class PlySink<float>;
 template class PlySink<double>;
 
-} // namespace OpenSubdivHex::BfrExt
+} // namespace OpenSubdivHex::Tools

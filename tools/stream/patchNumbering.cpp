@@ -1,36 +1,48 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "patchNumbering.h"
 
-#include "cell/faceSections.h"
-
-#include "far_ext/vtr/report.h"
-
 #include <algorithm>
 #include <array>
 #include <map>
+#include <mutex>
+#include <numeric>
+#include <utility>
 
-namespace OpenSubdivHex::BfrExt {
+namespace OpenSubdivHex::Tools {
 
+using BfrExt::LevelTessellation;
+using BfrExt::PatchStream;
+using BfrExt::Polyline;
 using FarExt::CallStatus;
 using FarExt::TopologyLevel;
 
 namespace {
 
-// How many of what a tessellation has.
+// How many of what a patch has.
 struct PatchCounts {
+    PatchCounts() = default;
     explicit PatchCounts(LevelTessellation const &tessellation)
         : numInteriorPoints(tessellation.GetNumInteriorCoords()),
           numFacets(tessellation.GetNumFacets()),
-          numFacetVertices(tessellation.GetNumFacetVertices()), maxFacetSize(0) {
-        std::vector<int> sizes(std::size_t(tessellation.GetNumFacets()));
-        tessellation.GetFacetSizes(sizes.data());
-        maxFacetSize = sizes.empty() ? 0 : *std::max_element(sizes.begin(), sizes.end());
+          numFacetVertices(tessellation.GetNumFacetVertices()),
+          maxFacetSize(tessellation.GetMaxFacetSize()) {}
+
+    int numInteriorPoints = 0;
+    int numFacets = 0;
+    int numFacetVertices = 0;
+    int maxFacetSize = 0;
+};
+
+struct SectionCounts {
+    SectionCounts() = default;
+    explicit SectionCounts(LevelTessellation const &tessellation) : ofPatch(tessellation) {
+        for (int edge = 0; edge < tessellation.GetNumEdges(); ++edge) {
+            numEdgePoints.push_back(tessellation.GetNumEdgeCoords(edge));
+        }
     }
 
-    int numInteriorPoints;
-    int numFacets;
-    int numFacetVertices;
-    int maxFacetSize;
+    PatchCounts ofPatch;
+    std::vector<int> numEdgePoints; // by edge of the section, without its ends
 };
 
 } // namespace
@@ -38,9 +50,11 @@ struct PatchCounts {
 /// \brief Numbers of what the sections of a face have, from the first of the face on.
 class PatchNumbering::SectionNumbers {
 public:
-    /// \param makeTessellation  of a section, which is forgotten again
-    template <typename MAKE>
-    SectionNumbers(internal::FaceSections const &sections, MAKE const &makeTessellation);
+    /// \param polygons  PatchStream::SectionPolygons of a face of \p faceSize vertices
+    /// \param counts    by section
+    template <typename POLYGONS>
+    SectionNumbers(POLYGONS const &polygons, int faceSize,
+                   std::vector<SectionCounts> const &counts);
 
     /// The first point inside of a section; of their number: the points inside of the face.
     Number GetFirstPoint(int section) const { return _firstPoint[std::size_t(section)]; }
@@ -73,64 +87,66 @@ private:
     std::vector<Item> _items;
 };
 
-template <typename MAKE>
-PatchNumbering::SectionNumbers::SectionNumbers(internal::FaceSections const &sections,
-                                               MAKE const &makeTessellation) {
-    using internal::CellMesh;
-    std::vector<CellMesh::Vertex> const &verts = sections.GetVertices();
+template <typename POLYGONS>
+PatchNumbering::SectionNumbers::SectionNumbers(POLYGONS const &polygons, int faceSize,
+                                               std::vector<SectionCounts> const &counts) {
+    // Calls function(corner, vertex there, vertex behind it) around a section.
+    auto const forEachSide = [&](std::size_t section, auto const &function) {
+        int const first = polygons.firstCorners[section];
+        int const end = polygons.firstCorners[section + 1];
+        for (int corner = first; corner < end; ++corner) {
+            int const next = corner + 1 == end ? first : corner + 1;
+            function(std::size_t(corner), polygons.vertices[std::size_t(corner)],
+                     polygons.vertices[std::size_t(next)]);
+        }
+    };
+    // Whether a side lies on the edge of the face that its start lies on.
+    auto const isOnEdge = [&](std::size_t start, std::size_t end) {
+        int const edge = polygons.edges[start];
+        return edge >= 0 &&
+               (polygons.edges[end] == edge ||
+                (polygons.edges[end] == (edge + 1) % faceSize && polygons.edgePoints[end] == -1));
+    };
     // Vertices inside, in the order of the first sections that have them.
     Number next = 0;
-    std::vector<Number> pointOfVertex(verts.size(), -1);
-    std::vector<bool> isTaken(verts.size());
-    for (int section = 0; section < sections.GetNumSections(); ++section) {
-        std::vector<int> const polygon = sections.GetPolygon(section);
+    std::vector<Number> pointOfVertex(polygons.edges.size(), -1);
+    std::vector<bool> isTaken(polygons.edges.size());
+    for (std::size_t section = 0; section < counts.size(); ++section) {
         _firstItem.push_back(_items.size());
-        for (std::size_t i = 0; i < polygon.size(); ++i) {
-            auto const vert = std::size_t(polygon[i]);
-            CellMesh::Vertex const &start = verts[vert];
-            CellMesh::Vertex const &end = verts[std::size_t(polygon[(i + 1) % polygon.size()])];
-            Item item = {-1, 0, 0, !isTaken[vert], false};
-            isTaken[vert] = true;
+        forEachSide(section, [&](std::size_t, int startVertex, int endVertex) {
+            auto const start = std::size_t(startVertex);
+            Item item = {polygons.edges[start], polygons.edgePoints[start], 0, !isTaken[start],
+                         false};
+            isTaken[start] = true;
             Item edge = {-1, 0, -1, true, false};
-            if (sections.IsOnEdge(start)) {
-                item.edge = start.sector;
-                item.edgePoint =
-                    start.b == 0
-                        ? -1
-                        : sections.CountPointsBefore(start.sector, sections.GetPlaceOnEdge(start));
-                if (sections.AreOnEdge(start, end)) {
-                    edge.edge = start.sector;
-                    edge.edgePoint = item.edgePoint + 1;
-                }
-            } else {
+            if (isOnEdge(start, std::size_t(endVertex))) {
+                edge.edge = item.edge;
+                edge.edgePoint = item.edgePoint + 1;
+            }
+            if (item.edge < 0) {
                 if (item.isOwn) {
-                    pointOfVertex[vert] = next++;
+                    pointOfVertex[start] = next++;
                 }
-                item.point = pointOfVertex[vert];
+                item.point = pointOfVertex[start];
             }
             _items.push_back(item);
             _items.push_back(edge);
-        }
+        });
     }
     // Edges inside, by their vertices: the second section has them backwards.
     std::map<std::pair<int, int>, Number> firstPointOfEdge;
-    std::vector<int> numInteriorPoints;
-    for (int section = 0; section < sections.GetNumSections(); ++section) {
-        LevelTessellation const tessellation = makeTessellation(section);
-        PatchCounts const counts(tessellation);
-        _firstFacet.push_back(_firstFacet.back() + counts.numFacets);
-        _firstFacetVertex.push_back(_firstFacetVertex.back() + counts.numFacetVertices);
-        _maxFacetSize = std::max(_maxFacetSize, counts.maxFacetSize);
-        numInteriorPoints.push_back(counts.numInteriorPoints);
-        std::vector<int> const polygon = sections.GetPolygon(section);
-        for (std::size_t i = 0; i < polygon.size(); ++i) {
-            Item &edge = _items[_firstItem[std::size_t(section)] + 2 * i + 1];
+    for (std::size_t section = 0; section < counts.size(); ++section) {
+        PatchCounts const &ofPatch = counts[section].ofPatch;
+        _firstFacet.push_back(_firstFacet.back() + ofPatch.numFacets);
+        _firstFacetVertex.push_back(_firstFacetVertex.back() + ofPatch.numFacetVertices);
+        _maxFacetSize = std::max(_maxFacetSize, ofPatch.maxFacetSize);
+        auto const firstCorner = std::size_t(polygons.firstCorners[section]);
+        forEachSide(section, [&](std::size_t corner, int start, int end) {
+            Item &edge = _items[2 * corner + 1];
             if (edge.edge >= 0) {
-                continue;
+                return;
             }
-            int const start = polygon[i];
-            int const end = polygon[(i + 1) % polygon.size()];
-            int const count = tessellation.GetNumEdgeCoords(int(i));
+            int const count = counts[section].numEdgePoints[corner - firstCorner];
             auto const other = firstPointOfEdge.find({end, start});
             if (other != firstPointOfEdge.end()) {
                 edge.point = other->second + count - 1;
@@ -142,11 +158,11 @@ PatchNumbering::SectionNumbers::SectionNumbers(internal::FaceSections const &sec
                 firstPointOfEdge.emplace(std::make_pair(start, end), next);
                 next += count;
             }
-        }
+        });
     }
-    for (int const count : numInteriorPoints) {
+    for (SectionCounts const &section : counts) {
         _firstPoint.push_back(next);
-        next += count;
+        next += section.ofPatch.numInteriorPoints;
     }
     _firstPoint.push_back(next);
 }
@@ -154,12 +170,50 @@ PatchNumbering::SectionNumbers::SectionNumbers(internal::FaceSections const &sec
 template <typename REAL>
 std::unique_ptr<PatchNumbering> PatchNumbering::Create(PatchStream<REAL> const &stream,
                                                        CallStatus *status) {
-    CallStatus const result = stream.checkRange(0, stream.GetFactory().GetNumFaces());
-    if (!FarExt::internal::Report(result, status)) {
+    TopologyLevel const &base = stream.GetFactory().GetLevel();
+    struct FaceInSections {
+        typename PatchStream<REAL>::SectionPolygons polygons;
+        std::vector<SectionCounts> sections;
+    };
+    std::vector<PatchCounts> counts(std::size_t(base.GetNumFaces()));
+    std::map<Index, FaceInSections> inSections;
+    std::mutex mutex;
+    auto const count = [&](Index face, LevelTessellation const &tessellation) {
+        int const numSections = tessellation.GetNumSections();
+        if (numSections == 1) {
+            counts[std::size_t(face)] = PatchCounts(tessellation);
+            return true;
+        }
+        int const section = tessellation.GetSection();
+        SectionCounts ofSection(tessellation);
+        typename PatchStream<REAL>::SectionPolygons polygons;
+        if (section == 0) {
+            polygons = stream.GetSectionPolygons(face);
+        }
+        std::lock_guard<std::mutex> const lock(mutex);
+        FaceInSections &ofFace = inSections[face];
+        ofFace.sections.resize(std::size_t(numSections));
+        ofFace.sections[std::size_t(section)] = std::move(ofSection);
+        if (section == 0) {
+            ofFace.polygons = std::move(polygons);
+        }
+        return true;
+    };
+    if (!stream.RunTessellations(count, status)) {
         return nullptr;
     }
     std::unique_ptr<PatchNumbering> numbering(new PatchNumbering(stream.GetFactory()));
-    TopologyLevel const &base = stream.GetFactory().GetLevel();
+    numbering->_maxFacetSize =
+        std::accumulate(counts.begin(), counts.end(), 0, [](int size, PatchCounts const &patch) {
+            return std::max(size, patch.maxFacetSize);
+        });
+    for (auto &[face, ofFace] : inSections) {
+        auto numbers = std::make_shared<SectionNumbers const>(
+            ofFace.polygons, base.GetFaceVertices(face).size(), ofFace.sections);
+        numbering->_maxFacetSize = std::max(numbering->_maxFacetSize, numbers->GetMaxFacetSize());
+        numbering->_sections.emplace(face, std::move(numbers));
+        ofFace = {};
+    }
     Number next = 0;
     for (Index vert = 0; vert < base.GetNumVertices(); ++vert) {
         numbering->_pointOfVertex.push_back(next);
@@ -181,51 +235,19 @@ std::unique_ptr<PatchNumbering> PatchNumbering::Create(PatchStream<REAL> const &
     numbering->_firstPointOfEdge.push_back(next);
     numbering->_firstFacet.push_back(0);
     numbering->_firstFacetVertex.push_back(0);
-    std::map<std::vector<int>, PatchCounts> counts;
-    std::map<std::vector<int>, std::shared_ptr<SectionNumbers const>> sectionsOfLevels;
-    auto const makeSections = [&](Index face) {
-        auto const sections = stream.makeSections(face);
-        LevelTessellation::Options const options = stream.GetOptions().GetTessellationOptions();
-        return std::make_shared<SectionNumbers const>(
-            *sections, [&](int section) { return LevelTessellation(*sections, section, options); });
-    };
-    std::vector<int> levels;
     for (Index face = 0; face < base.GetNumFaces(); ++face) {
         numbering->_firstPointOfFace.push_back(next);
-        Number numFacets = 0;
-        Number numFacetVertices = 0;
-        if (!base.IsFaceHole(face)) {
-            auto const add = [&](PatchCounts const &patch) {
-                next += patch.numInteriorPoints;
-                numFacets = patch.numFacets;
-                numFacetVertices = patch.numFacetVertices;
-                numbering->_maxFacetSize = std::max(numbering->_maxFacetSize, patch.maxFacetSize);
-            };
-            stream.getLevels(face, levels);
-            if (stream.isCut(face, levels)) {
-                std::shared_ptr<SectionNumbers const> ofTree;
-                auto &sections = stream.GetForest() ? ofTree : sectionsOfLevels[levels];
-                if (!sections) {
-                    sections = makeSections(face);
-                }
-                int const numSections = sections->GetNumSections();
-                next += sections->GetFirstPoint(numSections);
-                numFacets = sections->GetFirstFacet(numSections);
-                numFacetVertices = sections->GetFirstFacetVertex(numSections);
-                numbering->_maxFacetSize =
-                    std::max(numbering->_maxFacetSize, sections->GetMaxFacetSize());
-                numbering->_sections.emplace(face, sections);
-            } else if (stream.GetForest()) {
-                add(PatchCounts(stream.MakeTessellation(face)));
-            } else {
-                auto found = counts.find(levels);
-                if (found == counts.end()) {
-                    found =
-                        counts.emplace(levels, PatchCounts(stream.MakeTessellation(face))).first;
-                }
-                add(found->second);
-            }
+        PatchCounts const &patch = counts[std::size_t(face)];
+        Number numPoints = patch.numInteriorPoints;
+        Number numFacets = patch.numFacets;
+        Number numFacetVertices = patch.numFacetVertices;
+        if (SectionNumbers const *const sections = numbering->findSections(face)) {
+            int const numSections = sections->GetNumSections();
+            numPoints = sections->GetFirstPoint(numSections);
+            numFacets = sections->GetFirstFacet(numSections);
+            numFacetVertices = sections->GetFirstFacetVertex(numSections);
         }
+        next += numPoints;
         numbering->_firstFacet.push_back(numbering->_firstFacet.back() + numFacets);
         numbering->_firstFacetVertex.push_back(numbering->_firstFacetVertex.back() +
                                                numFacetVertices);
@@ -347,4 +369,4 @@ void PatchNumbering::GetPoints(Index face, LevelTessellation const &tessellation
     }
 }
 
-} // namespace OpenSubdivHex::BfrExt
+} // namespace OpenSubdivHex::Tools
