@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "polyline.h"
+#include "cellTree.h"
 
 #include <algorithm>
 

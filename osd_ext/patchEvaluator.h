@@ -46,8 +46,12 @@ private:
     friend struct internal::PatchTypes;
 };
 
-/// \brief The functions of CpuEvaluator and ParallelEvaluator that evaluate patches, with the
+/// \brief Functions of CpuEvaluator and ParallelEvaluator that evaluate patches, with the
 /// signatures of Osd::CpuEvaluator.
+///
+/// \code
+///     OsdExt::CpuEvaluator::EvalPatches(points, desc, dst, desc, numCoords, coords, cpuPatchTable);
+/// \endcode
 ///
 /// **Tables.** Osd::CpuPatchTable of any Far::PatchTable, of this library or of OpenSubdiv, or a class with
 /// its functions.  Patches of the types REGULAR, GREGORY_BASIS and QUADS, which those of Catmull-Clark and

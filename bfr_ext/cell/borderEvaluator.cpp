@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "borderEvaluator.h"
 
-#include "bfr_ext/polyline.h"
+#include "bfr_ext/cellTree.h"
 
 namespace OpenSubdivHex::BfrExt::internal {
 

@@ -9,7 +9,6 @@
 #include "bfr_ext/cell/cellGrid.h"
 #include "bfr_ext/cell/cellValues.h"
 #include "bfr_ext/surfaceFactory.h"
-#include "bfr_ext/surfaceFactoryCache.h"
 #include "bfr_ext/view.h"
 #include "far_ext/executor.h"
 #include "far_ext/limit/cellPatch.h"
