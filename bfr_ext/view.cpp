@@ -108,7 +108,7 @@ private:
 };
 
 /// A base face with its control points, of three numbers each.
-class BaseFace {
+class FaceToMeasure {
 public:
     /// Sets it, the first three numbers of its points being read.
     template <typename REAL>
@@ -160,7 +160,7 @@ public:
     /// \param getBase   is called where something is not known
     /// \param measures  those of the face, which it adds to
     TreeMaker(ViewGeometry const &geometry, View::Options const &options,
-              std::function<BaseFace const &()> const &getBase, FaceMeasures &measures,
+              std::function<FaceToMeasure const &()> const &getBase, FaceMeasures &measures,
               CellTree const *previous, CellTree &tree, std::vector<CellVisibility> *visibility)
         : _geometry(geometry), _options(options), _getBase(getBase), _measures(measures),
           _previous(previous), _tree(tree), _visibility(visibility) {}
@@ -332,7 +332,7 @@ private:
 
     ViewGeometry const &_geometry;
     View::Options const &_options;
-    std::function<BaseFace const &()> const &_getBase;
+    std::function<FaceToMeasure const &()> const &_getBase;
     FaceMeasures &_measures;
     CellTree const *const _previous;
     CellTree &_tree;
@@ -477,17 +477,18 @@ CellTree View::MakeTree(Surface<REAL> const &surface, REAL const controlPoints[]
                         typename Surface<REAL>::PointDescriptor const &pointDesc,
                         CellTree const *previous, std::vector<CellVisibility> *visibility) const {
     internal::FaceMeasures measures;
-    internal::BaseFace base;
+    internal::FaceToMeasure base;
     base.Set(surface.GetFace().type, controlPoints, pointDesc.stride,
              std::size_t(surface.GetNumControlPoints()));
     CellTree tree(surface.GetFaceSize());
     refine(
-        tree, [&]() -> internal::BaseFace const & { return base; }, measures, previous, visibility);
+        tree, [&]() -> internal::FaceToMeasure const & { return base; }, measures, previous,
+        visibility);
     return tree;
 }
 
 // The tree has one cell before.
-void View::refine(CellTree &tree, std::function<internal::BaseFace const &()> const &getBase,
+void View::refine(CellTree &tree, std::function<internal::FaceToMeasure const &()> const &getBase,
                   internal::FaceMeasures &measures, CellTree const *previous,
                   std::vector<CellVisibility> *visibility) const {
     if (visibility) {
@@ -583,7 +584,7 @@ public:
     }
     Surface<REAL> const &Get() const { return _surface; }
     REAL const *GetControlPoints() const { return _points.data(); }
-    internal::BaseFace const &GetBase() const { return _base; }
+    internal::FaceToMeasure const &GetBase() const { return _base; }
 
 private:
     SurfaceFactory const &_factory;
@@ -592,7 +593,7 @@ private:
     Index _face = Far::INDEX_INVALID;
     Surface<REAL> _surface;
     std::vector<REAL> _points;
-    internal::BaseFace _base;
+    internal::FaceToMeasure _base;
 };
 
 template <typename REAL>
@@ -628,7 +629,7 @@ CellForest View::makeForest(SurfaceFactory const &factory, ViewBounds *bounds,
                 }
                 std::size_t const memory = measures.GetMemory();
                 CellTree const *const last = hasPrevious ? &previous->GetTree(face) : nullptr;
-                auto const getBase = [&]() -> internal::BaseFace const & {
+                auto const getBase = [&]() -> internal::FaceToMeasure const & {
                     state.surface.Init(face);
                     return state.surface.GetBase();
                 };

@@ -13,7 +13,7 @@
 namespace OpenSubdivHex::BfrExt {
 
 namespace internal {
-class BaseFace;
+class FaceToMeasure;
 class ViewGeometry;
 struct FaceMeasures;
 } // namespace internal
@@ -220,7 +220,7 @@ private:
     template <typename REAL>
     class FaceSurface;
 
-    void refine(CellTree &tree, std::function<internal::BaseFace const &()> const &getBase,
+    void refine(CellTree &tree, std::function<internal::FaceToMeasure const &()> const &getBase,
                 internal::FaceMeasures &measures, CellTree const *previous,
                 std::vector<CellVisibility> *visibility) const;
     template <typename REAL>

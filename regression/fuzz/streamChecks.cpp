@@ -14,8 +14,8 @@ namespace OpenSubdivHex::Regression {
 using BfrExt::CellForest;
 using BfrExt::LevelTessellation;
 using BfrExt::PatchLevels;
-using Tools::PatchNumbering;
 using BfrExt::PatchStream;
+using Tools::PatchNumbering;
 
 namespace {
 
