@@ -88,9 +88,17 @@ void takeListOfFaces(py::object const &faces, BaseMesh *mesh) {
         mesh->faceVertices = taken.reshape({taken.size()});
         return;
     }
+    auto const check = [](py::handle object, std::string const &name) {
+        if (!py::isinstance<py::iterable>(object)) {
+            throw py::type_error("faces must be a list of lists of int; " + name + " is " +
+                                 Py_TYPE(object.ptr())->tp_name);
+        }
+    };
+    check(faces, "it");
     py::list all;
     for (py::handle const face : faces) {
         std::string const name = "faces[" + std::to_string(mesh->faceSizes.size()) + "]";
+        check(face, name);
         py::array_t<int> const taken = TakeIndices(face, name.c_str());
         mesh->faceSizes.push_back(int(taken.size()));
         all.append(taken);
@@ -103,12 +111,13 @@ void takeListOfFaces(py::object const &faces, BaseMesh *mesh) {
 /// Takes creases or corners: a pair (components, sharpness).
 std::pair<py::object, py::object> takePair(py::object const &object, char const *name) {
     if (!py::isinstance<py::tuple>(object) && !py::isinstance<py::list>(object)) {
-        throw py::type_error(std::string(name) + ": a pair (indices, sharpness) is needed");
+        throw py::type_error(std::string(name) + ": a pair (indices, sharpness) is needed, not " +
+                             Py_TYPE(object.ptr())->tp_name);
     }
     auto const pair = py::reinterpret_borrow<py::sequence>(object);
     if (pair.size() != 2) {
         throw py::value_error(std::string(name) + ": a pair (indices, sharpness) is needed, not " +
-                              std::to_string(pair.size()) + " things");
+                              std::to_string(pair.size()) + " objects");
     }
     return {pair[0], pair[1]};
 }

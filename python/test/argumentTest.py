@@ -15,11 +15,12 @@ def refiner():
 
 
 @pytest.mark.parametrize("arguments, error, message", [
-    ({"faces": None}, TypeError, "not iterable|NoneType"),
-    ({"faces": 3}, TypeError, "not iterable"),
+    ({"faces": None}, TypeError, "^faces must be a list of lists of int; it is NoneType$"),
+    ({"faces": 3}, TypeError, "^faces must be a list of lists of int; it is int$"),
+    ({"faces": [0, 1, 2]}, TypeError, r"^faces must be a list of lists of int; faces\[0\] is int$"),
     ({"faces": [[0, 1, 2.5]]}, TypeError, r"faces\[0\]: integers are needed, not float64"),
     ({"faces": [[0, 1, 2], "abc"]}, (TypeError, ValueError), r"faces\[1\]"),
-    ({"faces": [[0, 1, 2], 3]}, ValueError, r"faces\[1\]: 1 dimension is needed"),
+    ({"faces": [[0, 1, 2], 3]}, TypeError, r"^faces must be .* faces\[1\] is int$"),
     ({"faces": np.zeros((2, 3))}, TypeError, "faces: integers are needed, not float64"),
     ({"faces": np.zeros((2, 3), bool)}, TypeError, "faces: integers"),
     ({"faces": np.zeros(6, int)}, ValueError, "faces: 2 dimensions are needed"),
