@@ -29,6 +29,7 @@ decltype(auto) ElementOf(ARRAY &array, Far::Index i) {
 
 } // namespace internal
 
+/// \cond  Not for users.
 /// \brief What PrimvarRefinerReal has for all types of weights: nothing for users.
 class OPENSUBDIVHEX_API PrimvarRefinerBase {
 protected:
@@ -103,6 +104,7 @@ protected:
     /// By face of \p level, the face of level - 1 that it has face-uniform data of.
     static std::vector<Far::Index> findUniformSources(TopologyRefiner const &refiner, int level);
 };
+/// \endcond
 
 /// \brief Computes primvar data of one level from that of the level before, without tables.
 ///

@@ -17,6 +17,7 @@ namespace internal {
 struct PatchTypes;
 } // namespace internal
 
+/// \cond  Not for users.
 /// \brief What PatchEvaluator gives to its evaluators: nothing for users.
 class OPENSUBDIVHEX_API PatchEvaluatorBase {
 protected:
@@ -45,6 +46,7 @@ protected:
 private:
     friend struct internal::PatchTypes;
 };
+/// \endcond
 
 /// \brief Functions of CpuEvaluator and ParallelEvaluator that evaluate patches, with the
 /// signatures of Osd::CpuEvaluator.

@@ -26,6 +26,7 @@ struct StencilBlock;
 struct StencilTypes;
 } // namespace internal
 
+/// \cond  Not for users.
 /// \brief What StencilEvaluator gives to its evaluators: nothing for users.
 class StencilEvaluatorBase {
 protected:
@@ -51,6 +52,7 @@ private:
     friend class CompactStencilTable;
     friend struct internal::StencilTypes;
 };
+/// \endcond
 
 /// \brief A stencil table in less memory: consecutive stencils with the same indices, such as those of the corners of a
 /// face, share one list of indices.
