@@ -16,11 +16,16 @@ namespace internal {
 class KeptPlans;
 }
 
-/// \brief A tree of cells for each face of a base mesh, and the polylines that its edges become: the
-/// tessellation of a mesh, without gaps.
+/// \brief A watertight tessellation of a mesh: a tree of cells for each base face, and a polyline for each edge.
 ///
-/// The trees come first, in any order, then MatchEdges(), and then tessellations of any faces.  After
-/// that a face needs nothing of its neighbours.
+/// \code
+///     BfrExt::CellForest forest(*refiner);
+///     forest.SetTree(face, tree); // some faces, in any order
+///     forest.MatchEdges();
+///     BfrExt::LevelTessellation const tessellation = forest.GetTessellation(face);
+/// \endcode
+///
+/// After MatchEdges() a face needs nothing of its neighbours.
 ///
 /// Points that faces share are numbered: those of the base vertices first, as these, then the inner
 /// points of edge 0 in the direction of the edge, those of edge 1, and so on.  Both sides of an edge that
@@ -63,7 +68,7 @@ public:
     bool IsMatched(Index face) const;
     /// The polyline of an edge, in its own direction.
     Polyline const &GetPolyline(Index edge) const { return _polylines[std::size_t(edge)]; }
-    /// Those of the edges of a face, in the direction of the face.
+    /// The polylines of the edges of a face, in the direction of the face.
     std::vector<Polyline> GetFacePolylines(Index face) const;
     /// The tessellation of a face; invalid where not IsMatched().
     LevelTessellation

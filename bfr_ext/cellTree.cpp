@@ -46,10 +46,12 @@ int CellTree::Refine(int cell) {
     auto const level = short(parent.level + 1);
     _cells[std::size_t(cell)].firstChild = first;
     _numLeaves += GetNumChildren(cell) - 1;
+    _cells.resize(_cells.size() + std::size_t(GetNumChildren(cell)));
+    Cell *const children = &_cells[std::size_t(first)];
     if (parent.sector < 0) {
-        _cells.push_back({0, -1, level, -1});
+        children[0] = {0, -1, level, -1};
         for (int edge = 0; edge < _faceSize; ++edge) {
-            _cells.push_back({0, edge, level, short(parent.level == 0 ? 0 : -1)});
+            children[1 + edge] = {0, edge, level, short(parent.level == 0 ? 0 : -1)};
         }
         return first;
     }
@@ -60,7 +62,7 @@ int CellTree::Refine(int cell) {
         bool const isSide = child > 0 && parent.borderSide == child;
         short const side =
             parent.borderSide == 0 ? kSidesOnLongEdge[child] : short(isSide ? 0 : -1);
-        _cells.push_back({0, parent.sector, level, side});
+        children[child] = {0, parent.sector, level, side};
     }
     return first;
 }

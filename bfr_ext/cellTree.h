@@ -2,19 +2,89 @@
 #ifndef OPENSUBDIVHEX_BFR_EXT_CELL_TREE_H
 #define OPENSUBDIVHEX_BFR_EXT_CELL_TREE_H
 
-#include "polyline.h"
+#include "far_ext/export.h"
 
 #include <cstddef>
+#include <cstdint>
+#include <vector>
 
 namespace OpenSubdivHex::BfrExt {
 
-/// \brief How far the parts of a base face are refined: a tree of cells, any of which may be refined.
+/// \brief The segments of an edge of a base face between refined cells: the positions of its inner points.
 ///
-/// The *cell* of level 0 is the base face itself.  A refinement step makes of it its F-face, which is
-/// the same kind of cell, and on its side of each edge one half of a hexagon.  Of such a *half cell*,
-/// which has a long edge and three others, it makes the same half of the hexagon's F-face and half
-/// cells at the three edges.  What the cells that are not refined any further cover is the base face,
-/// without gaps and overlaps: any tree is a tessellation (LevelTessellation), and needs no balance.
+/// A polyline begins as one segment.  Refinement cuts a segment at a quarter and at three quarters of its length, then
+/// those segments again: a polyline is a tree.  Merge() makes the polyline that has the points of two and no others.  Two
+/// faces that take the merged polyline of their edge fit, however their own cells are refined.
+///
+/// Positions describe a polyline completely, and may be sent to another process.
+///
+/// \code
+///     polyline.Merge(neighbours.GetReversed()); // the points of both faces
+/// \endcode
+///
+/// Objects are values: several threads may read one.  std::bad_alloc passes through.
+class OPENSUBDIVHEX_API Polyline {
+public:
+    /// The last level that cells and edges can have.
+    static constexpr int kLastLevel = 12;
+    /// A place: how far a point is from the start of the edge, which is 0, with its end at kLength.
+    using Place = std::uint16_t;
+    /// The place of the end.
+    static constexpr int kLength = 1 << kLastLevel;
+
+    /// One segment.
+    Polyline() = default;
+    /// The polyline of an edge with cells of level 0 ... kLastLevel all along it: 1, 1, 3, 5, 11, 21, 43 ...
+    /// segments.
+    explicit Polyline(int level);
+    /// \brief The polyline with the given positions.
+    ///
+    /// \param places    ascending, without the ends
+    /// \param polyline  is not changed if the places are not those of a polyline
+    /// \return          whether they are
+    static bool FromPlaces(std::vector<Place> const &places, Polyline *polyline);
+
+    /// Inner points.
+    int GetNumPoints() const { return int(_places.size()); }
+    /// GetNumPoints() + 1.
+    int GetNumSegments() const { return GetNumPoints() + 1; }
+    /// The places of all inner points, ascending.
+    std::vector<Place> const &GetPlaces() const { return _places; }
+    /// Where inner point \p point is on the edge, from 0 at the start to 1 at the end.
+    double GetParameter(int point) const {
+        return double(_places[std::size_t(point)]) / double(kLength);
+    }
+
+    /// The polyline from the end of the edge to its start.
+    Polyline GetReversed() const;
+    /// Takes the points of another polyline of the same edge and direction, too.
+    void Merge(Polyline const &other);
+    /// Whether all points of \p other are points of this one.
+    bool Contains(Polyline const &other) const;
+
+    /// Whether the points are the same.
+    friend bool operator==(Polyline const &a, Polyline const &b) { return a._places == b._places; }
+    /// Whether they are not.
+    friend bool operator!=(Polyline const &a, Polyline const &b) { return !(a == b); }
+
+private:
+    friend class CellTree;
+
+    std::vector<Place> _places;
+};
+
+/// \brief Says which parts of a base face are refined: a tree of cells.
+///
+/// \code
+///     BfrExt::CellTree tree(4);                  // of a quad
+///     int const firstChild = tree.Refine(0);     // its F-face; then a half cell at each edge
+///     tree.Refine(firstChild + 1);               // the half cell at edge 0
+/// \endcode
+///
+/// The *cell* of level 0 is the base face.  Refining a whole cell makes its F-face, which is a whole cell, and half a
+/// hexagon at each edge.  Refining such a *half cell*, which has a long edge and three others, makes the same half of the
+/// hexagon's F-face, and half cells at the three edges.  The cells that are not refined cover the base face without gaps
+/// and overlaps: any tree is a tessellation (LevelTessellation), and needs no balance.
 ///
 /// Corners of half cells are counter-clockwise from the start of the long edge, which is side 0.
 ///
@@ -43,7 +113,7 @@ public:
     int GetFaceSize() const { return _faceSize; }
     /// All cells, with those that are refined.
     int GetNumCells() const { return int(_cells.size()); }
-    /// Those that are not refined.
+    /// Cells that are not refined.
     int GetNumLeaves() const { return _numLeaves; }
     /// The highest level that a cell has.
     int GetMaxLevel() const;
@@ -72,7 +142,7 @@ public:
 
     /// \brief The polyline that the cells make of an edge of the face, in the direction of the face.
     ///
-    /// Of a neighbour the other direction is the same edge's: Polyline::GetReversed().
+    /// A neighbour has the edge in the other direction: Polyline::GetReversed().
     Polyline GetEdgePolyline(int edge) const;
 
 private:

@@ -5,41 +5,40 @@
 #include "cellTree.h"
 #include "parameterization.h"
 
-#include <algorithm>
 #include <memory>
-#include <vector>
 
 namespace OpenSubdivHex::BfrExt {
 
 namespace internal {
-struct BfrPlace;
-class CellMesh;
-class CellPlan;
 class FaceSections;
-struct PatchPlan;
+class TessellationData;
 } // namespace internal
 
-/// \brief A base face cut into facets, as Bfr::Tessellation: places, at which a Surface is evaluated, and the facets
-/// between them.
+/// \brief A base face cut into facets by levels of refinement, as Bfr::Tessellation cuts it by rates: (u, v) at which a
+/// Surface is evaluated, and the facets between them.
 ///
-/// In place of Bfr's rates there are levels of refinement; a Surface takes a Bfr::Tessellation, with rates, too.
-/// The places are those of vertices, and the facets are cells: the F-face and the halves of hexagons that the
-/// refined levels have in the face.
-/// At level d an edge is a polyline of 1, 1, 3, 5, 11, 21, 43 ... segments (d = 0, 1, 2 ...), each of
-/// which has the points of the one before, too.
+/// \code
+///     BfrExt::LevelTessellation const tessellation(surface.GetParameterization(), 3); // level 3
+///     surface.Evaluate(tessellation, control, 3, points, 3);
+///     tessellation.GetFacets(facets); // triangles
+/// \endcode
 ///
-/// Cells are refined to the level of the inside, but for those whose refinement would give an edge of
-/// the face more points than its level has; or a CellTree says for each cell whether it is refined.
-/// Where a cell meets smaller ones, or an edge of a finer level, it has their points in its own sides.
-/// So neighbours fit whatever their levels and trees are, as long as both take the same level, or
-/// Polyline, for the edge that they share: there are no gaps, and no more facets than are asked for.
+/// The points are vertices of refined levels, the facets cells: the F-face and the halves of hexagons that these levels
+/// have in the face.  At level d = 0, 1, 2 ... an edge has 1, 1, 3, 5, 11, 21, 43 ... segments; each level has the points of
+/// the one before.
+///
+/// Cells are refined to the level of the inside, except those whose refinement would give an edge of the face more points
+/// than its level has; or a CellTree says which cells are refined.  A cell beside smaller ones, or beside an edge of a finer
+/// level, has their points in its own sides.  So neighbours that take the same level, or Polyline, for their edge fit
+/// without gaps, whatever their other levels and trees.
 ///
 /// A PatchStream cuts faces that are too large for its memory into *sections*, whose tessellations are
 /// parts of that of the face: with the same places and facets, but that hexagons which two sections have
 /// come in two halves, as those that two faces have.  A section is a polygon in the plane of the
 /// face, and fits to others as a face does to its neighbours.
 ///
-/// Nothing is changed after construction: several threads may use it.  std::bad_alloc passes through.
+/// Nothing is changed after construction: several threads may use it.  Copies share what it has.  std::bad_alloc
+/// passes through.
 class OPENSUBDIVHEX_API LevelTessellation {
 public:
     /// The last level, of the inside and of edges.
@@ -58,7 +57,7 @@ public:
             _facetSize = size;
             return *this;
         }
-        /// That size.
+        /// The size that was set.
         int GetFacetSize() const { return _facetSize; }
         /// Sets how far it is from one facet to the next, in indices; 0: the size of facets.  Of no
         /// matter for polygons.
@@ -66,14 +65,14 @@ public:
             _facetStride = stride;
             return *this;
         }
-        /// That distance.
+        /// The distance that was set.
         int GetFacetStride() const { return _facetStride; }
         /// Sets how far it is from one pair of coordinates to the next; 0: 2.
         Options &SetCoordStride(int stride) {
             _coordStride = stride;
             return *this;
         }
-        /// That distance.
+        /// The distance that was set.
         int GetCoordStride() const { return _coordStride; }
 
     private:
@@ -82,7 +81,7 @@ public:
         int _coordStride;
     };
 
-    /// \brief The same level everywhere, 0 ... kLastLevel.
+    /// \brief One level everywhere, 0 ... kLastLevel.
     ///
     /// The tessellation is invalid for other levels, for an invalid parameterization, for a facet size
     /// that is none of the three, for strides that are less than what they are between, and for so many
@@ -109,13 +108,22 @@ public:
     explicit LevelTessellation(CellTree const &tree, Polyline const edges[] = nullptr,
                                Options options = Options());
 
-    /// Whether the arguments were as they have to be, and it has not been moved from.
-    bool IsValid() const { return !_places.empty(); }
+    /// Moving copies.
+    LevelTessellation(LevelTessellation const &) = default;
+    /// \copydoc LevelTessellation(LevelTessellation const &)
+    LevelTessellation &operator=(LevelTessellation const &) = default;
+    ~LevelTessellation() = default;
+
+    /// A section of a face, as PatchStream makes it.
+    LevelTessellation(internal::FaceSections const &sections, int section, Options options);
+
+    /// Whether the arguments were as they have to be.
+    bool IsValid() const;
 
     /// The parameterization of the face.
-    Parameterization GetParameterization() const { return _parameterization; }
+    Parameterization GetParameterization() const;
     /// Vertices of the face.
-    int GetFaceSize() const { return _parameterization.GetFaceSize(); }
+    int GetFaceSize() const;
     /// Writes the levels of the edges and of the inside.
     /// \return  how many they are: GetFaceSize() + 1, or 0 of a tree
     int GetLevels(int levels[]) const;
@@ -123,35 +131,36 @@ public:
     bool IsUniform() const;
 
     /// How many sections the face is cut into: 1 if it is not.
-    int GetNumSections() const { return _section ? _section->count : 1; }
+    int GetNumSections() const;
     /// Which of them this is.
-    int GetSection() const { return _section ? _section->number : 0; }
+    int GetSection() const;
     /// Edges of the boundary: those of the face, or of the section.  Each edge of a section lies on an
     /// edge of the face, or is that of one other section, too, with the same places.
-    int GetNumEdges() const { return (std::max)(int(_firstEdgeCoords.size()) - 1, 0); }
+    int GetNumEdges() const;
 
     /// @name Coordinates
-    /// Those of the boundary come first, from vertex 0 on around the face, or the section: each vertex and
-    /// then the inner points of the edge behind it.
+    /// Points on the boundary come first, from vertex 0 on around the face, or the section: each vertex, then the inner
+    /// points of the edge behind it.
     /// @{
 
     /// All places.
-    int GetNumCoords() const { return int(_coords.size() / 2); }
+    int GetNumCoords() const;
     /// Numbers from one pair to the next.
-    int GetCoordStride() const { return _coordStride; }
+    int GetCoordStride() const;
     /// Places on the boundary.
-    int GetNumBoundaryCoords() const {
-        return _firstEdgeCoords.empty() ? 0 : _firstEdgeCoords.back();
-    }
+    int GetNumBoundaryCoords() const;
     /// Places inside.
     int GetNumInteriorCoords() const { return GetNumCoords() - GetNumBoundaryCoords(); }
     /// Places of an edge, without its ends.
     int GetNumEdgeCoords(int edge) const {
-        return _firstEdgeCoords[std::size_t(edge) + 1] - _firstEdgeCoords[std::size_t(edge)] - 1;
+        return GetVertexPlace(edge + 1) - GetVertexPlace(edge) - 1;
     }
+    /// Which of the places a vertex of the boundary is; of the number of edges: GetNumBoundaryCoords().
+    int GetVertexPlace(int vertex) const;
 
     /// Writes u and v of all places, in the parameterization of the face.
-    /// \return  how many they are, as do the following
+    /// \tparam REAL  float or double
+    /// \return       how many they are, as do the following
     template <typename REAL>
     int GetCoords(REAL coordTuples[]) const {
         return writeCoords(0, GetNumCoords(), coordTuples);
@@ -173,14 +182,13 @@ public:
     /// Writes that of a vertex of the boundary.
     template <typename REAL>
     int GetVertexCoord(int vertex, REAL coord[]) const {
-        int const place = _firstEdgeCoords[std::size_t(vertex)];
+        int const place = GetVertexPlace(vertex);
         return writeCoords(place, place + 1, coord);
     }
     /// Writes those of an edge, without its ends, from vertex \p edge to the next.
     template <typename REAL>
     int GetEdgeCoords(int edge, REAL coordTuples[]) const {
-        return writeCoords(_firstEdgeCoords[std::size_t(edge)] + 1,
-                           _firstEdgeCoords[std::size_t(edge) + 1], coordTuples);
+        return writeCoords(GetVertexPlace(edge) + 1, GetVertexPlace(edge + 1), coordTuples);
     }
     /// @}
 
@@ -189,16 +197,18 @@ public:
     /// @{
 
     /// All facets.
-    int GetNumFacets() const { return (std::max)(int(_firstFacetIndices.size()) - 1, 0); }
+    int GetNumFacets() const;
     /// 3, 4, or 0 for polygons.
-    int GetFacetSize() const { return _facetSize; }
+    int GetFacetSize() const;
     /// Indices from one facet to the next; 0 for polygons.
-    int GetFacetStride() const { return _facetStride; }
+    int GetFacetStride() const;
+    /// The largest size of a facet; 0 where there is none.
+    int GetMaxFacetSize() const;
     /// Writes the sizes of all facets.
     /// \return  GetNumFacets()
     int GetFacetSizes(int sizes[]) const;
     /// Sum of the sizes of all facets: what GetFacets() writes of polygons.
-    int GetNumFacetVertices() const { return int(_facetIndices.size()); }
+    int GetNumFacetVertices() const;
     /// Writes the levels of the cells that the facets are, or lie in.
     /// \return  GetNumFacets()
     int GetFacetLevels(int levels[]) const;
@@ -217,105 +227,14 @@ public:
                                     int const interiorIndices[]) const;
     /// @}
 
+    /// What it is made of, for the classes of this library.
+    internal::TessellationData const &GetData() const { return *_data; }
+
 private:
     template <typename REAL>
-    friend class Surface;
-    template <typename REAL>
-    friend class PatchStream;
-    friend class PatchNumbering;
-    friend struct internal::PatchPlan;
+    int writeCoords(int begin, int end, REAL coordTuples[]) const;
 
-    // Places on an edge of the face that follow one another in a section: from point number index of the
-    // edge on, -1 being its vertex.
-    struct BorderRun {
-        int edge;
-        int index;
-        int count;
-        int place;
-    };
-    // What the tessellation of a section has besides.
-    struct Section {
-        int number;
-        int count; // of the face
-        std::vector<BorderRun> border;
-    };
-
-    // The sector of an edge, and what the places of its start and its end weigh beside the centre.
-    struct SectorCoords {
-        int sector;
-        double start;
-        double end;
-    };
-
-    // A place that is a corner of a cell.
-    struct CellCorner {
-        int cell;
-        int corner;
-        int place;
-    };
-    // What the tessellation of a tree has besides.
-    struct Tree {
-        CellTree cells;
-        std::vector<Polyline> edges;
-        std::vector<int> edgeLevels;     // by edge, that of which it has the polyline; -1: none
-        std::vector<CellCorner> corners; // of all places that are corners, ascending by cell
-    };
-
-    // That of a section of a face.
-    LevelTessellation(internal::FaceSections const &sections, int section, Options const &options);
-
-    // Which cells the places inside lie in, made when it is first asked for; of levels, and of trees that
-    // are not large.
-    struct LazyCellPlans;
-    // Those of all places in a face with sub-faces, made when derivatives are first asked for.
-    struct LazyBfrPlaces;
-    std::vector<internal::BfrPlace> const &getBfrPlaces() const;
-    internal::CellPlan const &getCellPlan(bool isInLattice, bool isOfDerivatives = false) const;
-    int getLevelOfPlaces(bool isOfDerivatives) const;
-    // The places that are corners of the cells that CellStencil has their derivatives from, which with
-    // FaceMask::Average are others in other cells; ascending by cell.
-    std::vector<CellCorner> findCornersOfDerivatives() const;
-    // That of which an edge has the polyline; -1: none.
-    int getEdgeLevel(std::size_t edge) const {
-        return _tree ? _tree->edgeLevels[edge] : _levels[edge];
-    }
-
-    void initialize(Parameterization const &parameterization, int numLevels, int const levels[],
-                    Options const &options);
-    bool setOptions(Options const &options);
-    void setCells(internal::CellMesh const &mesh);
-    void setSection(internal::CellMesh const &mesh, internal::FaceSections const &sections);
-    std::vector<int> setPlaces(internal::CellMesh const &mesh, std::vector<int> const &order);
-    static void sortByCell(std::vector<CellCorner> &corners);
-    std::vector<double> findRegularCoords() const;
-    void setFacets(internal::CellMesh const &mesh, std::vector<int> const &places);
-    template <typename FUNCTION>
-    void transform(int facetTuples[], FUNCTION function) const;
-
-    template <typename REAL>
-    int writeCoords(int begin, int end, REAL coordTuples[]) const {
-        for (int i = begin; i < end; ++i, coordTuples += _coordStride) {
-            coordTuples[0] = REAL(_coords[2 * std::size_t(i)]);
-            coordTuples[1] = REAL(_coords[2 * std::size_t(i) + 1]);
-        }
-        return end - begin;
-    }
-
-    Parameterization _parameterization;
-    int _facetSize = 3;
-    int _facetStride = 3;
-    int _coordStride = 2;
-    std::vector<int> _levels;                  // of edges, then of the inside; none of a tree
-    std::shared_ptr<Tree> _tree;               // null of levels
-    std::shared_ptr<Section> _section;         // null of a face
-    std::shared_ptr<LazyCellPlans> _cellPlans; // null of a large tree and of its sections
-    std::shared_ptr<LazyBfrPlaces> _bfrPlaces; // null of a face without sub-faces
-    std::vector<double> _coords;               // two of each place
-    std::vector<SectorCoords> _places;         // the same, exactly
-    std::vector<int> _firstEdgeCoords;   // by edge, the place of its first vertex; then their end
-    std::vector<int> _firstFacetIndices; // by facet; then their end
-    std::vector<int> _facetIndices;      // of all facets
-    std::vector<int> _facetLevels;       // by facet
+    std::shared_ptr<internal::TessellationData const> _data; // never null: copied where it is moved
 };
 
 } // namespace OpenSubdivHex::BfrExt

@@ -8,17 +8,22 @@
 
 namespace OpenSubdivHex::BfrExt {
 
-/// \brief The parameterization of a base face: that of OpenSubdiv::Bfr for a face of this size.
+/// \brief (u, v) of a base face: the Bfr::Parameterization of OpenSubdiv for a face of its size.
+///
+/// \code
+///     float uv[2];
+///     surface.GetParameterization().GetCenterCoord(uv);
+/// \endcode
 ///
 /// A quad is the unit square.  A triangle has the corners (0, 0), (1, 0) and (0, 1), as with Loop's scheme.  Other
 /// faces have sub-faces, as with Catmull-Clark's: a *sub-face* is the kite of a corner, the middles of the two edges
-/// at it, and the centre of the face.  FarExt::TopologyLevel::GetFaceSurfaceCoords() says where the vertices of all
-/// levels lie.
+/// at it, and the centre of the face.  FarExt::TopologyLevel::GetFaceSurfaceCoords() has (u, v) of the vertices of all
+/// levels.
 class OPENSUBDIVHEX_API Parameterization : public OpenSubdiv::Bfr::Parameterization {
 public:
     /// An invalid one.
     Parameterization() = default;
-    /// That of a face of \p faceSize vertices; invalid for fewer than 3, and for more than Bfr allows.
+    /// The parameterization of a face of \p faceSize vertices; invalid for fewer than 3, and for more than Bfr allows.
     explicit Parameterization(int faceSize);
 };
 

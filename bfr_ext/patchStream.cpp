@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "patchStream.h"
 
+#include "cell/baseType.h"
 #include "stream/patchPlans.h"
 #include "stream/streamTypes.h"
 
-#include "far_ext/threads.h"
+#include "far_ext/executor.h"
+#include "far_ext/stencil/interpolationMode.h"
 #include "far_ext/vtr/parallel.h"
+#include "far_ext/vtr/report.h"
 
 #include <algorithm>
 #include <atomic>
@@ -69,41 +72,19 @@ private:
     std::unique_ptr<std::atomic<State>[]> const _states;
 };
 
-/// \brief Makes the patches of some faces one by one, and hands them out.
+/// \brief Finds the tessellations of patches, or makes them: each is there until the next one is asked for.
 template <typename REAL>
-class alignas(FarExt::internal::kCacheLine) PatchStream<REAL>::Worker {
+class PatchStream<REAL>::TessellationFinder {
 public:
-    Worker(PatchStream const &stream, REAL const *meshPoints, PointDescriptor const &meshPointDesc,
-           std::vector<Values> const &values, Sink const &sink, VertexPoints *vertexPoints)
-        : _stream(stream), _factory(&stream._factory), _meshPoints(meshPoints),
-          _meshPointDesc(meshPointDesc), _values(values), _sink(sink), _vertexPoints(vertexPoints),
-          _results(values.size()), _resultStarts(values.size()) {}
+    explicit TessellationFinder(PatchStream const &stream) : _stream(stream) {}
 
-    /// \brief Makes the patch of a face that is no hole, or of one of its sections.
-    ///
     /// \param section  -1: of the face as a whole
-    /// \return  false where the sink ended the stream, or a face has no surface, as status says
-    bool Run(Index face, int section, CallStatus &status) {
-        if (_stream._types && _numPatches++ % kFacesOfFactory == 0) {
-            _surface.Clear();
-            _ownFactory.reset();
-            _ownFactory = _stream._types->Get();
-            _factory = _ownFactory.get();
-        }
-        LevelTessellation const &tessellation =
-            section < 0 ? findTessellation(face) : findTessellation(face, section);
-        if (!evaluatePoints(face, tessellation, status) ||
-            !evaluateValues(face, tessellation, status)) {
-            return false;
-        }
-        bool const hasDerivatives = _stream._options.HasDerivatives();
-        return _sink({face, tessellation, _points.data(), _meshPointDesc.size,
-                      hasDerivatives ? _du.data() : nullptr, hasDerivatives ? _dv.data() : nullptr,
-                      _resultStarts.data()});
+    LevelTessellation const &Find(Index face, int section) {
+        return section < 0 ? find(face) : find(face, section);
     }
 
 private:
-    LevelTessellation const &findTessellation(Index face) {
+    LevelTessellation const &find(Index face) {
         if (_stream._forest) {
             return findTree(face);
         }
@@ -131,7 +112,7 @@ private:
         return _plan->tessellation;
     }
 
-    LevelTessellation const &findTessellation(Index face, int section) {
+    LevelTessellation const &find(Index face, int section) {
         _tessellation.reset();
         _plan.reset();
         _stream.getLevels(face, _levels);
@@ -150,6 +131,48 @@ private:
         return _plan->tessellation;
     }
 
+    PatchStream const &_stream;
+    std::optional<LevelTessellation> _tessellation; // of a tree
+    std::vector<int> _levels;                       // or what tells a tree
+    std::vector<int> _planLevels;
+    std::shared_ptr<internal::PatchPlan const> _plan;
+    std::unique_ptr<internal::FaceSections const> _sections; // of the last face that came in some
+    Index _sectionsFace = Far::INDEX_INVALID;
+};
+
+/// \brief Makes the patches of some faces one by one, and hands them out.
+template <typename REAL>
+class alignas(FarExt::internal::kCacheLine) PatchStream<REAL>::Worker {
+public:
+    Worker(PatchStream const &stream, REAL const *meshPoints, PointDescriptor const &meshPointDesc,
+           std::vector<Values> const &values, Sink const &sink, VertexPoints *vertexPoints)
+        : _stream(stream), _finder(stream), _factory(&stream._factory), _meshPoints(meshPoints),
+          _meshPointDesc(meshPointDesc), _values(values), _sink(sink), _vertexPoints(vertexPoints),
+          _results(values.size()), _resultStarts(values.size()) {}
+
+    /// \brief Makes the patch of a face that is no hole, or of one of its sections.
+    ///
+    /// \param section  -1: of the face as a whole
+    /// \return  false where the sink ended the stream, or a face has no surface, as status says
+    bool Run(Index face, int section, CallStatus &status) {
+        if (_stream._types && _numPatches++ % kFacesOfFactory == 0) {
+            _surface.Clear();
+            _ownFactory.reset();
+            _ownFactory = _stream._types->Get();
+            _factory = _ownFactory.get();
+        }
+        LevelTessellation const &tessellation = _finder.Find(face, section);
+        if (!evaluatePoints(face, tessellation, status) ||
+            !evaluateValues(face, tessellation, status)) {
+            return false;
+        }
+        bool const hasDerivatives = _stream._options.HasDerivatives();
+        return _sink({face, tessellation, _points.data(), _meshPointDesc.size,
+                      hasDerivatives ? _du.data() : nullptr, hasDerivatives ? _dv.data() : nullptr,
+                      _resultStarts.data()});
+    }
+
+private:
     // Gathers the control points of the surface, without gaps.
     void gather(REAL const *meshPoints, PointDescriptor const &desc) {
         _controlPoints.resize(std::size_t(_surface.GetNumControlPoints()) * std::size_t(desc.size));
@@ -158,8 +181,7 @@ private:
 
     // Faces are kept: the next frame has them, too.
     CallStatus initSurface(Index face, FarExt::Interpolation interpolation, int channel) {
-        return _ownFactory ? _factory->init(face, interpolation, channel, _surface)
-                           : _factory->initKept(face, interpolation, channel, _surface);
+        return _factory->TryInit(face, interpolation, channel, _surface, !_ownFactory);
     }
 
     bool evaluatePoints(Index face, LevelTessellation const &tessellation, CallStatus &status) {
@@ -170,7 +192,7 @@ private:
         PointDescriptor const desc(_meshPointDesc.size);
         std::size_t const size = std::size_t(tessellation.GetNumCoords()) * std::size_t(desc.size);
         _points.resize(size);
-        bool const areVerticesKept = _vertexPoints && _surface._type.GetPlain();
+        bool const areVerticesKept = _vertexPoints && _surface.GetFace().type.GetPlain();
         Far::ConstIndexArray const verts = _factory->GetLevel().GetFaceVertices(face);
         if (areVerticesKept && tessellation.GetNumCoords() == verts.size() &&
             _vertexPoints->Get(verts, _points.data())) {
@@ -186,7 +208,7 @@ private:
             _surface.Evaluate(tessellation, _controlPoints.data(), desc, _points.data(), desc);
         }
         for (int i = 0; areVerticesKept && i < verts.size(); ++i) {
-            int const place = tessellation._firstEdgeCoords[std::size_t(i)];
+            int const place = tessellation.GetVertexPlace(i);
             _vertexPoints->Add(verts[i], &_points[std::size_t(place) * std::size_t(desc.size)]);
         }
         return true;
@@ -217,6 +239,7 @@ private:
     static constexpr std::size_t kFacesOfFactory = 16;
 
     PatchStream const &_stream;
+    TessellationFinder _finder;
     std::shared_ptr<SurfaceFactory const> _ownFactory; // while types are not kept
     SurfaceFactory const *_factory;
     REAL const *const _meshPoints;
@@ -225,12 +248,6 @@ private:
     Sink const &_sink;
     VertexPoints *const _vertexPoints; // null: none are kept
     std::size_t _numPatches = 0;
-    std::optional<LevelTessellation> _tessellation; // of a tree
-    std::vector<int> _levels;                       // or what tells a tree
-    std::vector<int> _planLevels;
-    std::shared_ptr<internal::PatchPlan const> _plan;
-    std::unique_ptr<internal::FaceSections const> _sections; // of the last face that came in some
-    Index _sectionsFace = Far::INDEX_INVALID;
     Surface<REAL> _surface;
     std::vector<REAL> _controlPoints;
     std::vector<REAL> _points;
@@ -288,7 +305,7 @@ bool PatchStream<REAL>::isCut(Index face, std::vector<int> const &levels) const 
     return _forest ? _plans->IsCut(_forest->GetTree(face)) : _plans->IsCut(levels);
 }
 
-// Those of a face that comes in sections.
+// The sections of a face that is cut.
 template <typename REAL>
 std::unique_ptr<internal::FaceSections const> PatchStream<REAL>::makeSections(Index face) const {
     using internal::FaceSections;
@@ -433,7 +450,7 @@ LevelTessellation PatchStream<REAL>::MakeTessellation(Index face) const {
                              levels.data(), _options.GetTessellationOptions());
 }
 
-// Of several faces that are wrong, the first is told of, whoever finds it.
+// The status names the first wrong face, whichever thread finds it.
 template <typename REAL>
 CallStatus PatchStream<REAL>::checkRange(Index beginFace, Index endFace, bool *arePlansKept) const {
     FarExt::TopologyLevel const &base = _factory.GetLevel();
@@ -505,7 +522,7 @@ CallStatus PatchStream<REAL>::checkRange(Index beginFace, Index endFace, bool *a
 // Of a stream of levels, these are written.
 template <typename REAL>
 CallStatus PatchStream<REAL>::checkFace(Index face, std::vector<int> &levels) const {
-    CallStatus status = _factory.checkFace(face);
+    CallStatus status = _factory.CheckFace(face);
     if (!status.IsOk()) {
         return status;
     }
@@ -548,6 +565,51 @@ CallStatus PatchStream<REAL>::checkLevels(Index face, std::vector<int> const &le
     return refuse(*bad, ComponentType::Edge, "edge", edge);
 }
 
+// Has workers, each of which makeWorker() gives, make the patches of faces; false where one gave false.
+template <typename REAL>
+template <typename MAKE>
+bool PatchStream<REAL>::runWorkers(Index beginFace, Index endFace, bool arePlansKept,
+                                   MAKE const &makeWorker, CallStatus &status) const {
+    std::atomic<bool> isEnded(false);
+    std::mutex mutex;
+    Index const length = std::min(std::max((endFace - beginFace) / kNumRangesWanted, 1), kMaxRange);
+    // Hands out patches getPatch(0) ... getPatch(count - 1), where their faces are no holes.
+    auto const run = [&](Index count, auto const &getPatch) {
+        using PatchOfFace = typename Batch::PatchOfFace;
+        FarExt::TopologyLevel const &base = _factory.GetLevel();
+        FarExt::internal::ParallelForRange(
+            count, makeWorker,
+            [&](auto &worker, Index begin, Index end) {
+                CallStatus workerStatus;
+                for (Index i = begin; i < end && !isEnded; ++i) {
+                    PatchOfFace const patch = getPatch(i);
+                    if (base.IsFaceHole(patch.face) ||
+                        worker->Run(patch.face, patch.section, workerStatus)) {
+                        continue;
+                    }
+                    isEnded = true;
+                    std::lock_guard<std::mutex> const lock(mutex);
+                    if (status.IsOk()) {
+                        status = workerStatus;
+                    }
+                }
+            },
+            length);
+    };
+    if (arePlansKept) {
+        run(endFace - beginFace, [&](Index i) {
+            return typename Batch::PatchOfFace{beginFace + i, -1};
+        });
+    }
+    Batch batch;
+    while (!arePlansKept && beginFace < endFace && !isEnded) {
+        beginFace = takeFaces(beginFace, endFace, batch);
+        run(batch.numPatches, [&](Index i) { return batch.Get(i); });
+    }
+    _plans->Trim();
+    return !isEnded;
+}
+
 template <typename REAL>
 bool PatchStream<REAL>::Run(REAL const meshPoints[], PointDescriptor const &meshPointDesc,
                             std::vector<Values> const &values, Index beginFace, Index endFace,
@@ -568,49 +630,65 @@ bool PatchStream<REAL>::Run(REAL const meshPoints[], PointDescriptor const &mesh
             ? std::make_unique<VertexPoints>(_factory.GetLevel().GetNumVertices(),
                                              meshPointDesc.size)
             : nullptr;
-    std::atomic<bool> isEnded(false);
-    std::mutex mutex;
-    Index const length = std::min(std::max((endFace - beginFace) / kNumRangesWanted, 1), kMaxRange);
-    // Hands out patches getPatch(0) ... getPatch(count - 1), where their faces are no holes.
-    auto const run = [&](Index count, auto const &getPatch) {
-        using PatchOfFace = typename Batch::PatchOfFace;
-        FarExt::TopologyLevel const &base = _factory.GetLevel();
-        FarExt::internal::ParallelForRange(
-            count,
-            [&] {
-                return std::make_unique<Worker>(*this, meshPoints, meshPointDesc, values, sink,
-                                                vertexPoints.get());
-            },
-            [&](std::unique_ptr<Worker> &worker, Index begin, Index end) {
-                CallStatus workerStatus;
-                for (Index i = begin; i < end && !isEnded; ++i) {
-                    PatchOfFace const patch = getPatch(i);
-                    if (base.IsFaceHole(patch.face) ||
-                        worker->Run(patch.face, patch.section, workerStatus)) {
-                        continue;
-                    }
-                    isEnded = true;
-                    std::lock_guard<std::mutex> const lock(mutex);
-                    if (result.IsOk()) {
-                        result = workerStatus;
-                    }
-                }
-            },
-            length);
-    };
-    if (arePlansKept) {
-        run(endFace - beginFace, [&](Index i) {
-            return typename Batch::PatchOfFace{beginFace + i, -1};
-        });
-    }
-    Batch batch;
-    while (!arePlansKept && beginFace < endFace && !isEnded) {
-        beginFace = takeFaces(beginFace, endFace, batch);
-        run(batch.numPatches, [&](Index i) { return batch.Get(i); });
-    }
-    _plans->Trim();
+    bool const isDone = runWorkers(
+        beginFace, endFace, arePlansKept,
+        [&] {
+            return std::make_unique<Worker>(*this, meshPoints, meshPointDesc, values, sink,
+                                            vertexPoints.get());
+        },
+        result);
     FarExt::internal::Report(result, status);
-    return !isEnded;
+    return isDone;
+}
+
+template <typename REAL>
+bool PatchStream<REAL>::RunTessellations(TessellationSink const &sink, CallStatus *status) const {
+    Index const numFaces = _factory.GetNumFaces();
+    bool arePlansKept = false;
+    CallStatus result = checkRange(0, numFaces, &arePlansKept);
+    if (!FarExt::internal::Report(result, status)) {
+        return false;
+    }
+    struct alignas(FarExt::internal::kCacheLine) Finder {
+        bool Run(Index face, int section, CallStatus & /*status*/) {
+            return sink(face, finder.Find(face, section));
+        }
+
+        TessellationFinder finder;
+        TessellationSink const &sink;
+    };
+    return runWorkers(
+        0, numFaces, arePlansKept,
+        [&] {
+            return std::unique_ptr<Finder>(new Finder{TessellationFinder(*this), sink});
+        },
+        result);
+}
+
+template <typename REAL>
+auto PatchStream<REAL>::GetSectionPolygons(Index face) const -> SectionPolygons {
+    SectionPolygons result;
+    std::vector<int> levels;
+    getLevels(face, levels);
+    if (!isCut(face, levels)) {
+        return result;
+    }
+    std::unique_ptr<internal::FaceSections const> const sections = makeSections(face);
+    for (int section = 0; section < sections->GetNumSections(); ++section) {
+        std::vector<int> const polygon = sections->GetPolygon(section);
+        result.firstCorners.push_back(int(result.vertices.size()));
+        result.vertices.insert(result.vertices.end(), polygon.begin(), polygon.end());
+    }
+    result.firstCorners.push_back(int(result.vertices.size()));
+    for (internal::CellMesh::Vertex const &vert : sections->GetVertices()) {
+        bool const isOnEdge = sections->IsOnEdge(vert);
+        result.edges.push_back(isOnEdge ? vert.sector : -1);
+        result.edgePoints.push_back(
+            !isOnEdge || vert.b == 0
+                ? -1
+                : sections->CountPointsBefore(vert.sector, sections->GetPlaceOnEdge(vert)));
+    }
+    return result;
 }
 
 template class PatchStream<float>;

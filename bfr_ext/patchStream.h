@@ -12,8 +12,6 @@
 
 namespace OpenSubdivHex::BfrExt {
 
-class PatchNumbering;
-
 namespace internal {
 class FaceSections;
 class PatchPlans;
@@ -29,15 +27,15 @@ public:
     /// Gives the level of a face, or of an edge.  Called by any thread, by several at once.
     using Function = std::function<int(Far::Index)>;
 
-    /// The same level everywhere.
+    /// One level everywhere.
     explicit PatchLevels(int level) : _isUniform(true), _level(level) {}
     /// A level for each face and one for each edge; as arrays, [&](int face) { return levels[face]; }.
     PatchLevels(Function ofFaces, Function ofEdges)
         : _ofFaces(std::move(ofFaces)), _ofEdges(std::move(ofEdges)) {}
 
-    /// That of the inside of a face.
+    /// The level of the inside of a face.
     int GetFaceLevel(Far::Index face) const { return _isUniform ? _level : _ofFaces(face); }
-    /// That of an edge.
+    /// The level of an edge.
     int GetEdgeLevel(Far::Index edge) const { return _isUniform ? _level : _ofEdges(edge); }
 
 private:
@@ -47,14 +45,21 @@ private:
     Function _ofEdges;
 };
 
-/// \brief Evaluates the surfaces of base faces, some at a time, hands each to a *sink* and forgets it.
+/// \brief Evaluates the surfaces of all base faces in bounded memory: hands each to a *sink* and forgets it.
 ///
-/// So the memory does not depend on how much comes out: it is what Options::SetMaxMemory() says, what the cache of
-/// the factory has, and as far as SurfaceFactory::Options::SetMemoryOfFaces() allows, the faces that the factory
-/// keeps for the next frame, with 8 bytes for each of their corners; for a CellForest also a point for each vertex
-/// of the mesh.  What comes out is a patch
-/// for each base face that is no hole: its tessellation, and the points of that; with them derivatives, and values
-/// of varying and face-varying data, where they are asked for.
+/// \code
+///     BfrExt::PatchStream<float> const stream(*factory, BfrExt::PatchLevels(5));
+///     stream.Run(positions, 3, [&](BfrExt::PatchStream<float>::Patch const &patch) {
+///         return Write(patch.points, patch.tessellation.GetNumCoords()); // false ends the stream
+///     });
+/// \endcode
+///
+/// The sink gets a patch for each base face that is no hole: a tessellation and its points and, if asked for, derivatives
+/// and values of varying and face-varying data.
+///
+/// **Memory** is the sum of Options::SetMaxMemory(), the cache of the factory, and the faces that the factory keeps for the
+/// next frame (SurfaceFactory::Options::SetMemoryOfFaces()), with 8 bytes for each of their corners; for a CellForest also a
+/// point for each vertex of the mesh.
 ///
 /// A face whose tessellation would take more memory than a fourth of that has a patch for each of its
 /// *sections* (LevelTessellation::GetSection()).  Neighbouring sections share the points on their boundaries, as
@@ -79,7 +84,7 @@ public:
     /// The size of points and the distance from one to the next.
     using PointDescriptor = typename Surface<REAL>::PointDescriptor;
 
-    /// \brief What a sink gets of one base face, or of a section of it; it is there during the call.
+    /// \brief The patch of a base face, or of a section of it, that a sink gets; valid during the call.
     struct Patch {
         Index face; ///< the base face
         LevelTessellation const
@@ -117,12 +122,12 @@ public:
         /// Triangles, no derivatives, and 4 megabytes.
         Options() = default;
 
-        /// Sets what facets are like; strides of coordinates are of no matter.
+        /// Sets the options of facets; strides of coordinates are ignored.
         Options &SetTessellationOptions(LevelTessellation::Options const &options) {
             _tessellationOptions = options;
             return *this;
         }
-        /// That.
+        /// The options of facets.
         LevelTessellation::Options const &GetTessellationOptions() const {
             return _tessellationOptions;
         }
@@ -151,7 +156,7 @@ public:
             _maxMemory = bytes;
             return *this;
         }
-        /// That number.
+        /// The number that was set.
         std::size_t GetMaxMemory() const { return _maxMemory; }
 
         /// \brief Sets how many types of faces and cells are kept at a time, each of some kilobytes;
@@ -165,7 +170,7 @@ public:
             _maxTypes = count;
             return *this;
         }
-        /// That number.
+        /// The number that was set.
         std::size_t GetMaxTypes() const { return _maxTypes; }
 
     private:
@@ -181,7 +186,7 @@ public:
     /// \param levels   how fine they are
     PatchStream(SurfaceFactory const &factory, PatchLevels levels)
         : PatchStream(factory, std::move(levels), Options()) {}
-    /// The same with options.
+    /// Overload with options.
     PatchStream(SurfaceFactory const &factory, PatchLevels levels, Options const &options);
 
     /// \brief A stream of the cells of trees.
@@ -190,7 +195,7 @@ public:
     /// \param forest   of the same refiner, after MatchEdges(); it must live as long
     /// \param options  facets and memory
     PatchStream(SurfaceFactory const &factory, CellForest const &forest, Options const &options);
-    /// The same with the default options.
+    /// Overload with default options.
     PatchStream(SurfaceFactory const &factory, CellForest const &forest)
         : PatchStream(factory, forest, Options()) {}
 
@@ -209,14 +214,14 @@ public:
              FarExt::CallStatus *status = nullptr) const {
         return Run(meshPoints, meshPointDesc, 0, _factory.GetNumFaces(), sink, status);
     }
-    /// \brief The same for faces \p beginFace ... \p endFace - 1, as a process takes its share.
+    /// \brief Overload for faces \p beginFace ... \p endFace - 1: the share of a process.
     ///
     /// \return  false with InvalidArgument, too, for a range that is not one of faces
     bool Run(REAL const meshPoints[], PointDescriptor const &meshPointDesc, Index beginFace,
              Index endFace, Sink const &sink, FarExt::CallStatus *status = nullptr) const {
         return Run(meshPoints, meshPointDesc, {}, beginFace, endFace, sink, status);
     }
-    /// \brief The same with further values.
+    /// \brief Overload with further values.
     ///
     /// \param values  what patches have as Patch::values, in this order
     /// \return        false with InvalidArgument, too, for a channel that the mesh has not
@@ -228,8 +233,33 @@ public:
     int GetNumSections(Index face) const;
     /// The tessellation of such a face as a whole, whatever memory that takes.
     LevelTessellation MakeTessellation(Index face) const;
-    /// That of a section, 0 ... GetNumSections(face) - 1: those that the patches of the face have.
+    /// The tessellation of a section, 0 ... GetNumSections(face) - 1, as the patches of the face have it.
     LevelTessellation MakeTessellation(Index face, int section) const;
+
+    /// Takes the face and the tessellation of a patch, as a sink takes a patch.
+    using TessellationSink = std::function<bool(Index face, LevelTessellation const &tessellation)>;
+    /// \brief Hands out the tessellations of all patches, as Run() makes them, without points: for whoever needs
+    /// to know what patches there will be.
+    ///
+    /// \return  as that of Run()
+    bool RunTessellations(TessellationSink const &sink, FarExt::CallStatus *status = nullptr) const;
+
+    /// \brief The sections of a face, as polygons in it.
+    ///
+    /// A *corner* is a vertex of one of these, in the order of the boundary of the section's tessellation
+    /// (LevelTessellation::GetVertexPlace()); where sections meet, corners of theirs have the same vertex.
+    struct SectionPolygons {
+        std::vector<int> firstCorners; ///< by section; then their end
+        std::vector<int> vertices;     ///< by corner
+        /// By vertex, on which edge of the face it lies, a vertex of the face on the one that begins there; -1:
+        /// inside.
+        std::vector<int> edges;
+        /// By vertex on an edge, which of the points is there that LevelTessellation::GetEdgeCoords() of the whole
+        /// face would have; -1: that of the face's vertex.
+        std::vector<int> edgePoints;
+    };
+    /// Those of a face for which GetNumSections() gives more than 1; of others none.
+    SectionPolygons GetSectionPolygons(Index face) const;
 
     /// The factory that was given.
     SurfaceFactory const &GetFactory() const { return _factory; }
@@ -241,7 +271,7 @@ public:
     Options const &GetOptions() const { return _options; }
 
 private:
-    friend class PatchNumbering;
+    class TessellationFinder;
     class VertexPoints;
     class Worker;
     struct Batch;
@@ -257,6 +287,9 @@ private:
     bool isCut(Index face, std::vector<int> const &levels) const;
     std::unique_ptr<internal::FaceSections const> makeSections(Index face) const;
     Index takeFaces(Index beginFace, Index endFace, Batch &batch) const;
+    template <typename MAKE>
+    bool runWorkers(Index beginFace, Index endFace, bool arePlansKept, MAKE const &makeWorker,
+                    FarExt::CallStatus &status) const;
 
     SurfaceFactory const &_factory;
     PatchLevels const _levels;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "polyline.h"
+#include "cellTree.h"
 
 #include <algorithm>
 
@@ -76,6 +76,7 @@ void Polyline::Merge(Polyline const &other) {
         return;
     }
     Places merged;
+    merged.reserve(_places.size() + other._places.size());
     std::set_union(_places.begin(), _places.end(), other._places.begin(), other._places.end(),
                    std::back_inserter(merged));
     _places = std::move(merged);

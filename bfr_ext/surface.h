@@ -8,6 +8,7 @@
 #include <opensubdiv/far/types.h>
 
 #include <algorithm>
+#include <cstddef>
 #include <memory>
 #include <vector>
 
@@ -18,85 +19,61 @@ namespace Far = OpenSubdiv::Far;
 namespace BfrExt {
 
 namespace internal {
-class CellType;
-class PlainFaceType;
-template <typename REAL>
-class BorderEvaluator;
-template <typename REAL>
-class PatchEvaluator;
-struct BfrPlace;
-
-/// The type of a base face: that of a plain one, or one that was made at once.
-class BaseType {
-public:
-    BaseType() = default;
-    explicit BaseType(CellType const &type) : _type(&type) {}
-    explicit BaseType(PlainFaceType const &plain) : _plain(&plain) {}
-
-    explicit operator bool() const { return _type || _plain; }
-    CellType const &operator*() const;
-    CellType const *operator->() const { return &**this; }
-    bool IsInLattice() const;
-    /// Whether something sharp is near.
-    bool IsSharp() const;
-    /// That of a plain face that is not in a lattice, whose CellType need not be made; null of others.
-    PlainFaceType const *GetPlain() const;
-
-private:
-    CellType const *_type = nullptr;
-    PlainFaceType const *_plain = nullptr;
-};
+class BaseType;
+template <typename TYPE>
+struct KeptFace;
 } // namespace internal
 
 /// \brief The limit surface of a base face, as Bfr::Surface: a function of u and v.
 ///
-/// It depends on the *control points* of a face, which are vertices of its level (or values of a
-/// face-varying channel) around it: the faces at its vertices and at their neighbours have them.  All
-/// that is evaluated is a weighted sum of these, and the weights of points are not negative: the hull
-/// of the control points contains the surface.
+/// \code
+///     BfrExt::Surface<float> surface;
+///     if (factory->InitVertexSurface(face, &surface)) {
+///         std::vector<float> points(3 * surface.GetNumPatchPoints());
+///         surface.PreparePatchPoints(positions, 3, points.data(), 3); // once a frame
+///         surface.Evaluate(uv, points.data(), 3, p, du, dv);
+///     }
+/// \endcode
 ///
-/// The scheme is no spline: its surface has no polynomials.  There are two ways to evaluate it.
-///  - **A place, from patch points**, is that of a bicubic Gregory patch: the cells of level 3, or that of
-///    SurfaceFactory::Options::SetApproxLevelSmooth(), are one each.  They have the limit points and tangent
-///    planes at the corners of cells, and neighbours, also those in other faces, have the same points and
-///    tangent planes along the edge that they share, but for rounding.  With FaceMask::Smooth, at level 3, points
-///    lie some 2e-6 of the size of a model from the surface (rms) and normals deviate by 0.1 to 0.2 degrees;
-///    each level more divides that by 8 and 3.  Along the surface, points are up to a hundredth of a face away
-///    from the exact ones at base vertices that have not three faces, where cells do not shrink by 1/2.
-///  - **Tessellations and stencils** are exact: at the places of vertices of any level (see
-///    FarExt::TopologyLevel::GetFaceSurfaceCoords()) as limit stencil tables are.  Elsewhere the cells, faces
-///    and halves of hexagons, that have the place are followed level by level until the surface between the
-///    corners of one is bilinear: 16 levels, which leaves less than a billionth of the size of the face, or
-///    40 where the surface is less smooth, at most a millionth.  A stencil takes tens of microseconds.
+/// The surface depends on the *control points* of the face: the vertices of its level (or values of a face-varying channel)
+/// in the faces at its vertices and at their neighbours.  Every point is a weighted sum of control points, with weights
+/// that are not negative: the hull of the control points contains the surface.
 ///
-/// **First derivatives.** Du and Dv span the tangent plane, and Du x Dv points to the side from which
-/// the face is counter-clockwise.
-///  - With FaceMask::Smooth and FaceMask::Cosine they are derivatives by u and v, from the side of the
-///    cell that has the place: cells meet at the lines from the centre of the face to its corners and
-///    at its edges, and across these the plane goes on, but u and v have a bend.
-///  - At some places the plane exists and derivatives do not, since cells shrink by another factor
-///    than 1/2 from level to level: at base vertices that have not three faces, and everywhere with
-///    FaceMask::Average.  What is given there has the size that it has between the vertices of the
-///    level in which the place becomes a vertex; with FaceMask::Average its length at other places
-///    than vertices of the first levels means nothing.
-///    So differences of points over differences of u and v do not tend to it: with FaceMask::Average
-///    they shrink by 0.88 in each level at a base vertex of three faces (where cells shrink by 0.44),
-///    whatever sizes these have, while their directions do tend to those of Du and Dv.
-///  - Varying data have kinks along edges of all levels: there the differences some levels on are
-///    given, or those of patches, which are bilinear between their corners.
+/// The surface is no spline.  There are two ways to evaluate it:
+///  - **Evaluate() at (u, v), from patch points.** The surface is approximated by bicubic Gregory patches, one for each cell of
+///    level 3, or of SurfaceFactory::Options::SetApproxLevelSmooth().  Patches have the limit points and tangent planes at
+///    the corners of cells.  Neighbours, in other faces, too, have equal points and tangent planes along their common edge,
+///    except for rounding.  With FaceMask::Smooth at level 3, points lie 2e-6 of a model's size from the surface (rms), and
+///    normals deviate by 0.1 to 0.2 degrees; each further level divides these by 8 and 3.  Near extraordinary base
+///    vertices, where cells do not shrink by 1/2, points are shifted along the surface by up to a hundredth of a face.
+///  - **Tessellations and stencils** are exact at vertices of any level (FarExt::TopologyLevel::GetFaceSurfaceCoords()), as
+///    limit stencil tables are.  Elsewhere the cells around (u, v) are refined until the surface between the corners of a
+///    cell is bilinear: 16 levels, with an error below a billionth of the face's size, or 40 where the surface is less
+///    smooth, with at most a millionth.  A stencil takes tens of microseconds.
+///
+/// **First derivatives.** Du and Dv span the tangent plane, and Du x Dv points to the side from which the face is
+/// counter-clockwise.
+///  - With FaceMask::Smooth and FaceMask::Cosine they are the derivatives by u and v, from the side of the cell around
+///    (u, v).  Across edges of the face, and lines from its centre to its corners, the plane is continuous, but u and v bend.
+///  - Exceptions are extraordinary base vertices and, with FaceMask::Average, all (u, v): the plane exists, derivatives do
+///    not, because cells do not shrink by 1/2 from level to level.  The length is then that between the vertices of the level
+///    in which (u, v) becomes a vertex; with FaceMask::Average it means nothing elsewhere.  Differences of points over
+///    those of u and v do not converge: with FaceMask::Average they shrink by 0.88 in each level at a base vertex of three
+///    faces (where cells shrink by 0.44).  Only their directions converge, to those of Du and Dv.
+///  - Varying data have kinks along edges of all levels: there derivatives are differences some levels on, or those of
+///    patches, which are bilinear between their corners.
 ///
 /// **Second derivatives**, by u twice, by u and v, and by v twice, are from the same side.  Vertex data, and
-/// face-varying data that are refined like these, have them with FaceMask::Smooth: exactly at the places of
-/// vertices, elsewhere to half a hundredth of their size on average.
-///  - There are none at base vertices that have not three faces, towards which they may grow, at the centres
-///    of faces that are no hexagons, and on the lines of borders and creases.
-///  - With FaceMask::Cosine they are bounded and have no limit, with FaceMask::Average they are unbounded, and
-///    varying data have kinks.
-///  - What is given in all these cases is how first derivatives change over a cell of the tenth level.
+/// face-varying data that are refined like these, have them with FaceMask::Smooth: exact at vertices, elsewhere within 0.5 %
+/// on average.
+///  - There are none at extraordinary base vertices, towards which they may grow, at the centres of faces that are no
+///    hexagons, and on borders and creases.
+///  - With FaceMask::Cosine they are bounded and have no limit; with FaceMask::Average they are unbounded; varying data have
+///    kinks.
+///  - In all these cases the result is the change of first derivatives over a cell of level 10.
 ///
-/// Const functions may be called by several threads at once.  A surface may outlive the factory and
-/// the cache.  An invalid surface evaluates nothing: nothing is written.  Other arguments are not
-/// checked; std::bad_alloc passes through.
+/// Several threads may call const functions at once.  A surface may outlive the factory and the cache.  An invalid surface
+/// writes nothing.  Other arguments are not checked; std::bad_alloc passes through.
 template <typename REAL>
 class OPENSUBDIVHEX_API Surface {
 public:
@@ -123,9 +100,13 @@ public:
     Surface(Surface const &other);
     /// \copydoc Surface(Surface const &)
     Surface &operator=(Surface const &other);
+    /// Makes the other one invalid.
+    Surface(Surface &&other) noexcept;
+    /// \copydoc Surface(Surface &&)
+    Surface &operator=(Surface &&other) noexcept;
 
     /// Whether SurfaceFactory initialized it.
-    bool IsValid() const { return bool(_type); }
+    bool IsValid() const { return _owner != nullptr; }
     /// Makes it invalid.
     void Clear();
 
@@ -138,21 +119,21 @@ public:
     /// @{
 
     /// Control points of the face.
-    int GetNumControlPoints() const { return _numControlPoints; }
-    /// Writes which points of the mesh they are: the vertices of the face first, in its order.  No vertex
-    /// comes twice, also where the face has it twice; a face-varying value does where it belongs to several
-    /// fans of faces around its vertex, in each of which it is refined alone.
+    int GetNumControlPoints() const;
+    /// Writes the indices of control points in the mesh: the vertices of the face first, in its order.  No vertex
+    /// comes twice, even if the face has it twice.  A face-varying value may come several times: once for each fan of faces
+    /// around its vertex, because each fan is refined apart.
     /// \return  GetNumControlPoints()
     int GetControlPointIndices(Index meshPointIndices[]) const;
     /// Copies the control points from those of the mesh.
     template <typename REAL_MESH>
     void GatherControlPoints(REAL_MESH const meshPoints[], PointDescriptor const &meshPointDesc,
                              REAL controlPoints[], PointDescriptor const &controlPointDesc) const {
-        prefetch();
-        Index const *const points = getPoints();
-        for (int k = 0; k < _numControlPoints; ++k) {
+        Index const *const points = prefetchPoints();
+        Index const *const end = points + GetNumControlPoints();
+        for (Index const *point = points; point != end; ++point) {
             REAL_MESH const *const from =
-                meshPoints + std::ptrdiff_t(points[k]) * meshPointDesc.stride;
+                meshPoints + std::ptrdiff_t(*point) * meshPointDesc.stride;
             if (meshPointDesc.size == 3) { // by far the most
                 controlPoints[0] = REAL(from[0]);
                 controlPoints[1] = REAL(from[1]);
@@ -167,15 +148,15 @@ public:
     /// Writes the box of the control points, in which the surface lies.
     void BoundControlPoints(REAL const controlPoints[], PointDescriptor const &controlPointDesc,
                             REAL minExtent[], REAL maxExtent[]) const;
-    /// The same from the points of the mesh.
+    /// Overload that takes the points of the mesh.
     void BoundControlPointsFromMesh(REAL const meshPoints[], PointDescriptor const &meshPointDesc,
                                     REAL minExtent[], REAL maxExtent[]) const;
 
     /// @}
 
     /// @name Patch points
-    /// What places are evaluated from: the control points, and then the points of bicubic Gregory patches, 20 of
-    /// each.  They are made once for the points of a mesh, and serve any number of places.
+    /// The points that Evaluate() at (u, v) takes: the control points, then 20 points of each bicubic Gregory patch.  Make
+    /// them once for the points of a mesh; they serve any number of evaluations.
     /// @{
 
     /// Control points and points of patches.
@@ -191,9 +172,8 @@ public:
     /// @}
 
     /// @name Evaluation
-    /// (u, v) outside the face, however far, is moved to its boundary, towards the centre; outside of a
-    /// sub-face, to that of the sub-face which Bfr finds.  Where u or v
-    /// is not a number, points and derivatives are none, and some weights.
+    /// (u, v) outside the face is moved to its boundary, towards the centre; outside of a sub-face, to the boundary of the
+    /// sub-face that Bfr finds.  If u or v is not a number, points, derivatives and some weights are not numbers.
     /// @{
 
     /// Writes the point at \p uv: pointDesc.size numbers.
@@ -201,10 +181,10 @@ public:
     /// \param patchPoints  those of PreparePatchPoints(), of as many numbers
     void Evaluate(REAL const uv[2], REAL const patchPoints[], PointDescriptor const &pointDesc,
                   REAL p[]) const;
-    /// The same with first derivatives.
+    /// Overload with first derivatives.
     void Evaluate(REAL const uv[2], REAL const patchPoints[], PointDescriptor const &pointDesc,
                   REAL p[], REAL du[], REAL dv[]) const;
-    /// The same with first and second derivatives.
+    /// Overload with first and second derivatives.
     void Evaluate(REAL const uv[2], REAL const patchPoints[], PointDescriptor const &pointDesc,
                   REAL p[], REAL du[], REAL dv[], REAL duu[], REAL duv[], REAL dvv[]) const;
 
@@ -214,9 +194,9 @@ public:
     /// Two faces that share an edge get the same points there, to the bit, if the edge has the same
     /// level, or Polyline, in both and their control points come from the same mesh: so facets of
     /// neighbours can be joined by comparing points.  Levels and polylines give a place the same point.
-    /// That holds for any threads, orders, trees and levels of the inside; not at non-manifold edges and
-    /// vertices, nor for face-varying values on the two sides of a seam; and last bits may differ on edges
-    /// and at vertices of the faces around a non-manifold vertex that has a closed fan of faces among others.
+    /// This holds for any threads, orders, trees and levels of the inside.  Exceptions: non-manifold edges and vertices;
+    /// face-varying values on the two sides of a seam; last bits on edges and at vertices of the faces around a
+    /// non-manifold vertex with a closed fan among others.
     ///
     /// The weights are found when a type of faces or of cells is first evaluated so, and kept in the
     /// cache.  Inside of trees of more than 128 cells the control points are refined cell by cell instead,
@@ -224,12 +204,11 @@ public:
     void Evaluate(LevelTessellation const &tessellation, REAL const controlPoints[],
                   PointDescriptor const &pointDesc, REAL p[],
                   PointDescriptor const &resultDesc) const;
-    /// The same with first derivatives.
+    /// Overload with first derivatives.
     void Evaluate(LevelTessellation const &tessellation, REAL const controlPoints[],
                   PointDescriptor const &pointDesc, REAL p[], REAL du[], REAL dv[],
                   PointDescriptor const &resultDesc) const;
-    /// The same with first and second derivatives, of which the second ones are found place by place: that
-    /// takes some ten microseconds each.
+    /// Overload with first and second derivatives.  Second derivatives take about ten microseconds a point.
     void Evaluate(LevelTessellation const &tessellation, REAL const controlPoints[],
                   PointDescriptor const &pointDesc, REAL p[], REAL du[], REAL dv[], REAL duu[],
                   REAL duv[], REAL dvv[], PointDescriptor const &resultDesc) const;
@@ -245,17 +224,16 @@ public:
     ///                      or invalid.
     ///
     /// Two faces that share an edge get the same points there, to the bit, if the edge has the same rate in both,
-    /// with the exceptions said above.  A place of an edge has the same point at whatever rates, levels and
-    /// polylines have it: 1/3 and 2/6, 1/4 and the first one of level 2.
+    /// with the same exceptions.  Equal parameters on an edge have the same point, whatever rates, levels and polylines have
+    /// them: 1/3 and 2/6, 1/4 and the first point of level 2.
     ///
-    /// The weights of places are found when a type of faces is first evaluated with some inner rates, or with some
-    /// rate on an edge, which takes some ten microseconds a place.  They are kept in the cache, some twenty to fifty
-    /// for a place inside, and twice as many more for its derivatives.  Those of more than 4,096 places inside, and of
-    /// rates above 1,024 on an edge, are found each time.
+    /// Weights are found when a type of faces is first evaluated with its inner rates, or with a rate of an edge: about ten
+    /// microseconds a point.  The cache keeps them: twenty to fifty for a point inside, twice as many more for its
+    /// derivatives.  Weights of more than 4,096 points inside, and of rates above 1,024 on an edge, are found each time.
     void Evaluate(OpenSubdiv::Bfr::Tessellation const &tessellation, REAL const controlPoints[],
                   PointDescriptor const &pointDesc, REAL p[],
                   PointDescriptor const &resultDesc) const;
-    /// The same with first derivatives.
+    /// Overload with first derivatives.
     void Evaluate(OpenSubdiv::Bfr::Tessellation const &tessellation, REAL const controlPoints[],
                   PointDescriptor const &pointDesc, REAL p[], REAL du[], REAL dv[],
                   PointDescriptor const &resultDesc) const;
@@ -263,74 +241,38 @@ public:
     /// Writes the weights of the control points that make the point at \p uv.
     /// \return  GetNumControlPoints()
     int EvaluateStencil(REAL const uv[2], REAL weights[]) const;
-    /// The same with those of the first derivatives.
+    /// Overload with weights of first derivatives.
     int EvaluateStencil(REAL const uv[2], REAL weights[], REAL duWeights[], REAL dvWeights[]) const;
-    /// The same with those of the second derivatives.
+    /// Overload with weights of first and second derivatives.
     int EvaluateStencil(REAL const uv[2], REAL weights[], REAL duWeights[], REAL dvWeights[],
                         REAL duuWeights[], REAL duvWeights[], REAL dvvWeights[]) const;
     /// Writes the weighted sum of control points.
     void ApplyStencil(REAL const stencil[], REAL const controlPoints[],
                       PointDescriptor const &controlPointDesc, REAL result[]) const;
-    /// The same from the points of the mesh.
+    /// Overload that takes the points of the mesh.
     void ApplyStencilFromMesh(REAL const stencil[], REAL const meshPoints[],
                               PointDescriptor const &meshPointDesc, REAL result[]) const;
     /// @}
 
+    /// What it is made of, for the classes of this library; of a valid surface.
+    internal::KeptFace<internal::BaseType> const &GetFace() const;
+
 private:
     friend class SurfaceFactory;
-    friend class View;
-    template <typename>
-    friend class PatchStream;
 
-    void set(std::shared_ptr<void const> const &owner, internal::BaseType const &type, int size,
-             int patchLevel, int numControlPoints, Index const *keptPoints) {
-        if (_owner != owner) {
-            _owner = owner;
-        }
-        _type = type;
-        _patchLevel = patchLevel;
-        _numControlPoints = numControlPoints;
-        _keptPoints = keptPoints;
-        if (_parameterization.GetFaceSize() != size) { // mostly that of the face before
-            _parameterization = Parameterization(size);
-        }
-    }
-    // Has what evaluates it brought to the cache, while control points are gathered.
-    void prefetch() const;
-    bool canEvaluate(LevelTessellation const &tessellation) const;
-    internal::BfrPlace findPlace(REAL const uv[2]) const;
-    int evaluateStencil(REAL const uv[2], int numDerivatives, REAL *const weights[6]) const;
-    void turnDerivatives(LevelTessellation const &tessellation, std::size_t size,
-                         REAL *const derivatives[5], PointDescriptor const &resultDesc) const;
+    // The control points, while what evaluates them is brought to the cache.
+    Index const *prefetchPoints() const;
     void evaluate(REAL const uv[2], int numDerivatives, REAL const patchPoints[],
                   PointDescriptor const &pointDesc, REAL *const results[6]) const;
     void evaluate(LevelTessellation const &tessellation, REAL const controlPoints[],
-                  PointDescriptor const &pointDesc, REAL *const results[3],
+                  PointDescriptor const &pointDesc, REAL *const results[6],
                   PointDescriptor const &resultDesc) const;
-    void evaluateTree(LevelTessellation const &tessellation, REAL const controlPoints[],
-                      PointDescriptor const &pointDesc, REAL *const results[3],
-                      PointDescriptor const &resultDesc) const;
-    template <typename FUNCTION>
-    void useBorder(REAL const controlPoints[], PointDescriptor const &pointDesc,
-                   FUNCTION const &function) const;
-    void evaluateBorder(LevelTessellation const &tessellation,
-                        internal::BorderEvaluator<REAL> &evaluator, REAL p[],
-                        PointDescriptor const &resultDesc) const;
-    void evaluateSectionBorder(LevelTessellation const &tessellation,
-                               internal::BorderEvaluator<REAL> &evaluator, REAL p[],
-                               PointDescriptor const &resultDesc) const;
+    int evaluateStencil(REAL const uv[2], int numDerivatives, REAL *const weights[6]) const;
 
-    // The control points, and then the turns.
-    Index const *getPoints() const { return _keptPoints ? _keptPoints : _ownPoints.data(); }
-    // By edge and then by vertex, how the face has what it shares with its neighbours.
-    int const *getTurns() const { return getPoints() + _numControlPoints; }
-
-    std::shared_ptr<void const> _owner; // of the type, and of points that are kept
-    internal::BaseType _type;
-    int _numControlPoints = 0;
+    std::shared_ptr<void const> _owner; // of what the face refers to; null of an invalid surface
+    internal::KeptFace<internal::BaseType> const *_keptFace = nullptr; // the owner's; null: its own
+    std::vector<std::byte> _ownFace;
     int _patchLevel = 0;
-    Index const *_keptPoints = nullptr; // null: its own
-    std::vector<Index> _ownPoints;
     Parameterization _parameterization;
 };
 

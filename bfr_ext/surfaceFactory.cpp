@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "surfaceFactory.h"
 
-#include "cell/cellType.h"
+#include "cell/baseType.h"
 #include "cell/facePatches.h"
-#include "cell/keptFaces.h"
-#include "cell/plainFace.h"
 
 #include "far_ext/limit/limitRows.h"
+#include "far_ext/stencil/interpolationMode.h"
+#include "far_ext/vtr/report.h"
 
 #include <algorithm>
 #include <string>
@@ -72,13 +72,13 @@ SurfaceFactory::SurfaceFactory(SurfaceFactory const &other, Options options)
 
 // Sets the cache, and what is kept of it.
 void SurfaceFactory::setTypes() {
-    _types = _options.GetExternalCache() ? _options.GetExternalCache()->_types
+    _types = _options.GetExternalCache() ? _options.GetExternalCache()->GetTypes()
                                          : std::make_shared<internal::CellTypes>();
     for (Interpolation const interpolation : {Interpolation::Vertex, Interpolation::Varying}) {
         _plainTypes[std::size_t(interpolation)] =
             &_types->GetPlainFaces(getRules(_refiner, interpolation));
     }
-    auto kept = std::make_shared<KeptFaces>(
+    auto kept = std::make_shared<internal::KeptFaces<internal::BaseType>>(
         _types, GetNumFaces(), std::size_t(kNumInterpolations + _refiner.GetNumFVarChannels()),
         _options.GetMemoryOfFaces());
     _kept = kept.get();
@@ -86,6 +86,10 @@ void SurfaceFactory::setTypes() {
 }
 
 SurfaceFactory::~SurfaceFactory() = default;
+
+std::unique_ptr<SurfaceFactory> SurfaceFactory::CreateWith(Options options) const {
+    return std::unique_ptr<SurfaceFactory>(new SurfaceFactory(*this, options));
+}
 
 int SurfaceFactory::getPatchLevel(internal::BaseType const &type) const {
     int const level =
@@ -131,7 +135,7 @@ CallStatus SurfaceFactory::checkIsFace(Index face) const {
                                    " faces of level " + std::to_string(_level.GetDepth()));
 }
 
-CallStatus SurfaceFactory::checkFace(Index face) const {
+CallStatus SurfaceFactory::CheckFace(Index face) const {
     CallStatus result = checkIsFace(face);
     if (!result.IsOk()) {
         return result;
@@ -174,7 +178,7 @@ CallStatus SurfaceFactory::checkCrowd(Index face, int channel, Index levelFace) 
 }
 
 bool SurfaceFactory::FaceHasLimitSurface(Index face, CallStatus *status) const {
-    CallStatus result = checkFace(face);
+    CallStatus result = CheckFace(face);
     Level const &level = _level.GetLevel();
     if (result.IsOk() && findVertexOfManyFaces(level, face) < level.GetFaceSize(face)) {
         std::vector<Index> points;
@@ -196,7 +200,7 @@ internal::CellType const *SurfaceFactory::findType(int channel, Index levelFace,
                                                    Interpolation interpolation,
                                                    std::vector<Index> &points,
                                                    CallStatus &status) const {
-    status = checkFace(face);
+    status = CheckFace(face);
     if (status.IsOk() && channel >= 0) {
         status = checkCrowd(face, channel, levelFace);
     }
@@ -225,75 +229,99 @@ internal::CellType const *SurfaceFactory::findType(int channel, Index levelFace,
     return &type;
 }
 
-template <typename REAL>
-CallStatus SurfaceFactory::init(Index face, Interpolation interpolation, int channel,
-                                Surface<REAL> &surface) const {
-    CallStatus result = checkIsFace(face);
-    if (!result.IsOk()) {
-        surface.Clear();
-        return result;
+// What a thread makes faces with: what it has taken of memory is kept for the next one.
+struct SurfaceFactory::FaceMaker {
+    internal::PlainFaceGatherer gatherer;
+    std::vector<Index> points; // of a face that is not plain
+    std::vector<std::byte> bytes;
+};
+
+// Makes what the surface of a face is made of, of the bytes.
+CallStatus SurfaceFactory::makeFace(Index face, Interpolation interpolation, int channel,
+                                    FaceMaker &maker, internal::BaseFace const *&made) const {
+    CallStatus status = checkIsFace(face);
+    if (!status.IsOk()) {
+        return status;
     }
     FarExt::internal::Hierarchy const &hierarchy = _refiner.GetHierarchy();
     FVarChannel const *const values =
         channel < 0 ? nullptr : &hierarchy.channels[std::size_t(channel)];
     auto const depth = std::size_t(_level.GetDepth());
-    Level const &level = hierarchy.GetMesh(channel).levels[depth];
     Index const levelFace = values ? values->levels[depth].valueFaces[face] : face;
-    std::vector<Index> &points = surface._ownPoints;
+    int const size = _level.GetLevel().GetFaceSize(face);
+    internal::FacePoints<internal::BaseType> points(maker.bytes);
     internal::BaseType type;
-    // What it has taken of memory is kept for the next face.
-    static thread_local internal::PlainFaceGatherer gatherer;
     if (internal::PlainFaceType const *const plain =
-            gatherer.Find(*_plainTypes[std::size_t(interpolation)], *_walks.begin()[channel + 1],
-                          levelFace, points)) {
+            maker.gatherer.Find(*_plainTypes[std::size_t(interpolation)],
+                                *_walks.begin()[channel + 1], levelFace, points)) {
         type = internal::BaseType(*plain);
     } else if (internal::CellType const *const cellType =
-                   findType(channel, levelFace, face, interpolation, points, result)) {
+                   findType(channel, levelFace, face, interpolation, maker.points, status)) {
         type = internal::BaseType(*cellType);
+        points.resize(maker.points.size());
+        std::copy(maker.points.begin(), maker.points.end(), points.data());
     } else {
-        surface.Clear();
-        return result;
+        return status;
     }
-    int const size = level.GetFaceSize(levelFace);
-    int const numPoints = int(points.size()) - 2 * size;
-    surface.set(_owner, type, size, getPatchLevel(type), numPoints, nullptr);
     // Vertices of the value mesh of a later level are its values.
     if (values && depth == 0) {
-        std::for_each_n(points.begin(), numPoints,
+        std::for_each_n(points.data(), int(points.size()) - 2 * size,
                         [&](Index &point) { point = values->valuesOfVertices[point]; });
     }
-    return result;
+    made = &points.Make(type, size);
+    return status;
 }
 
 template <typename REAL>
-CallStatus SurfaceFactory::initKept(Index face, Interpolation interpolation, int channel,
-                                    Surface<REAL> &surface) const {
+CallStatus SurfaceFactory::TryInit(Index face, Interpolation interpolation, int channel,
+                                   Surface<REAL> &surface, bool isKept) const {
     auto const kind = std::size_t(channel < 0 ? int(interpolation) : kNumInterpolations + channel);
-    KeptFaces::Face const *kept = hasRefinedAgain() ? nullptr : _kept->Find(kind, face);
-    if (!kept) {
-        CallStatus result = init(face, interpolation, channel, surface);
-        if (!result.IsOk()) {
-            return result;
-        }
-        kept = _kept->Add(kind, face, surface._type, surface.GetFaceSize(), surface._ownPoints);
-    }
+    internal::BaseFace const *const kept =
+        isKept && !hasRefinedAgain() ? _kept->Find(kind, face) : nullptr;
     if (kept) {
-        surface.set(_owner, kept->type, kept->size, getPatchLevel(kept->type), kept->numPoints,
-                    kept->GetPoints());
+        set(*kept, true, surface);
+        return CallStatus();
     }
-    return CallStatus();
+    // Where memory runs out, the surface stays as it was.
+    static thread_local FaceMaker maker;
+    internal::BaseFace const *own = nullptr;
+    CallStatus status = makeFace(face, interpolation, channel, maker, own);
+    if (!own) {
+        surface.Clear();
+    } else if (internal::BaseFace const *const added =
+                   isKept ? _kept->Add(kind, face, *own) : nullptr) {
+        set(*added, true, surface);
+    } else {
+        surface._ownFace.swap(maker.bytes);
+        set(*own, false, surface);
+    }
+    return status;
+}
+
+// Makes the surface that of a face, which is kept or is its own.
+template <typename REAL>
+void SurfaceFactory::set(internal::BaseFace const &face, bool isKept,
+                         Surface<REAL> &surface) const {
+    if (surface._owner != _owner) {
+        surface._owner = _owner;
+    }
+    surface._keptFace = isKept ? &face : nullptr;
+    surface._patchLevel = getPatchLevel(face.type);
+    if (surface._parameterization.GetFaceSize() != face.size) { // mostly that of the face before
+        surface._parameterization = Parameterization(face.size);
+    }
 }
 
 template <typename REAL>
 bool SurfaceFactory::InitVertexSurface(Index face, Surface<REAL> *surface,
                                        CallStatus *status) const {
-    return FarExt::internal::Report(initKept(face, Interpolation::Vertex, -1, *surface), status);
+    return FarExt::internal::Report(TryInit(face, Interpolation::Vertex, -1, *surface), status);
 }
 
 template <typename REAL>
 bool SurfaceFactory::InitVaryingSurface(Index face, Surface<REAL> *surface,
                                         CallStatus *status) const {
-    return FarExt::internal::Report(initKept(face, Interpolation::Varying, -1, *surface), status);
+    return FarExt::internal::Report(TryInit(face, Interpolation::Varying, -1, *surface), status);
 }
 
 template <typename REAL>
@@ -305,8 +333,8 @@ bool SurfaceFactory::InitFaceVaryingSurface(Index face, Surface<REAL> *surface, 
         return FarExt::internal::Report(result, status);
     }
     return FarExt::internal::Report(
-        initKept(face, FarExt::internal::GetChannelInterpolation(_refiner, channel), channel,
-                 *surface),
+        TryInit(face, FarExt::internal::GetChannelInterpolation(_refiner, channel), channel,
+                *surface),
         status);
 }
 
@@ -323,7 +351,7 @@ bool SurfaceFactory::InitSurfaces(Index face, Surface<REAL> *vertex, Surface<REA
     CallStatus result;
     auto const initNext = [&](Interpolation interpolation, int channel, Surface<REAL> *surface) {
         if (surface && result.IsOk()) {
-            result = initKept(face, interpolation, channel, *surface);
+            result = TryInit(face, interpolation, channel, *surface);
         }
     };
     initNext(Interpolation::Vertex, -1, vertex);
@@ -347,10 +375,10 @@ bool SurfaceFactory::InitSurfaces(Index face, Surface<REAL> *vertex, Surface<REA
     return FarExt::internal::Report(result, status);
 }
 
-template CallStatus SurfaceFactory::init(Index, Interpolation, int, Surface<float> &) const;
-template CallStatus SurfaceFactory::init(Index, Interpolation, int, Surface<double> &) const;
-template CallStatus SurfaceFactory::initKept(Index, Interpolation, int, Surface<float> &) const;
-template CallStatus SurfaceFactory::initKept(Index, Interpolation, int, Surface<double> &) const;
+template CallStatus SurfaceFactory::TryInit(Index, Interpolation, int, Surface<float> &,
+                                            bool) const;
+template CallStatus SurfaceFactory::TryInit(Index, Interpolation, int, Surface<double> &,
+                                            bool) const;
 template bool SurfaceFactory::InitVertexSurface(Index, Surface<float> *, CallStatus *) const;
 template bool SurfaceFactory::InitVertexSurface(Index, Surface<double> *, CallStatus *) const;
 template bool SurfaceFactory::InitVaryingSurface(Index, Surface<float> *, CallStatus *) const;

@@ -3,7 +3,6 @@
 #define OPENSUBDIVHEX_BFR_EXT_SURFACE_FACTORY_H
 
 #include "surface.h"
-#include "surfaceFactoryCache.h"
 
 #include "far_ext/topologyRefiner.h"
 
@@ -13,22 +12,65 @@
 #include <utility>
 #include <vector>
 
+namespace OpenSubdivHex::FarExt {
+enum class Interpolation;
+} // namespace OpenSubdivHex::FarExt
+
 namespace OpenSubdivHex::BfrExt {
 
 namespace internal {
+class CellType;
 class CellTypes;
 class FaceWalk;
 template <typename TYPE>
 class KeptFaces;
 class PlainFaceTypes;
-class StreamTypes;
 } // namespace internal
+
+/// \brief Keeps the weights that surfaces of faces that look alike share, as Bfr::SurfaceFactoryCache.
+///
+/// Faces whose neighbourhoods have the same topology and tags have one *type*, in one mesh or in several, with any
+/// options.  The weights of a type are found once.  Every SurfaceFactory has a cache of its own unless it is given one:
+///
+/// \code
+///     BfrExt::SurfaceFactoryCache cache; // for several meshes
+///     BfrExt::SurfaceFactory::Options options;
+///     options.SetCache(&cache);
+/// \endcode
+///
+/// Any number of threads and of factories may share a cache.  It grows by some hundred bytes with each type
+/// of faces that it meets.  When a surface of the type is first evaluated, or at once where a feature is
+/// near, it grows by some kilobytes for it and for each type of cell that evaluation goes through.  Of the
+/// tessellations that are evaluated it keeps the weights, for types of faces or of cells.  Surfaces keep
+/// what they need of the cache, so that it may go before them.
+class OPENSUBDIVHEX_API SurfaceFactoryCache {
+public:
+    SurfaceFactoryCache();
+    ~SurfaceFactoryCache();
+
+    SurfaceFactoryCache(SurfaceFactoryCache const &) = delete;
+    SurfaceFactoryCache &operator=(SurfaceFactoryCache const &) = delete;
+
+    /// Types that are there: those of faces, and those of the cells that evaluation went through.
+    std::size_t GetNumTypes() const;
+
+    /// The types, for the classes of this library.
+    std::shared_ptr<internal::CellTypes> const &GetTypes() const { return _types; }
+
+private:
+    std::shared_ptr<internal::CellTypes> _types;
+};
 
 /// \brief Makes the surfaces of base faces, as Bfr::RefinerSurfaceFactory.
 ///
-/// It takes level 0 of a refiner, which need not be refined and to which it refers: surfaces need no
-/// levels.  Sharpness, corners, boundaries, non-manifold parts and face-varying seams are as in
-/// refinement.
+/// \code
+///     auto factory = BfrExt::SurfaceFactory::Create(*refiner); // no refinement needed
+///     BfrExt::Surface<float> surface;
+///     factory->InitVertexSurface(face, &surface);
+/// \endcode
+///
+/// A factory takes level 0 of a refiner, and refers to it.  Sharpness, corners, boundaries, non-manifold parts and
+/// face-varying seams are as in refinement.
 ///
 /// **Behind a first step** (FarExt::FirstStep) level 1 takes the place of level 0: base faces, edges and
 /// vertices in BfrExt are then those of this *surface level*
@@ -37,13 +79,12 @@ class StreamTypes;
 /// its evaluators make the control points.  FarExt::TopologyLevel::GetFaceBaseFace() leads from faces of
 /// GetLevel() to those of level 0, with their materials.
 ///
-/// Holes have no surface; nor, with VTX_BOUNDARY_NONE, have faces at a boundary, where the border of every level
-/// lies elsewhere, and the few that FaceHasLimitSurface() names.
+/// No surface have holes, the few faces that FaceHasLimitSurface() names and, with VTX_BOUNDARY_NONE, faces at a boundary,
+/// which has no limit.
 ///
-/// When the first surface of a mesh, or of a channel, is made, the ways from vertex to vertex around its faces
-/// are found, 8 bytes a corner.  What the surface of a face is made of is kept when one is made the second
-/// time, so that making more is a look-up, as in the frames of an animation: some 200 bytes a face, as far as
-/// Options::SetMemoryOfFaces() allows.
+/// **Memory.** The first surface of a mesh, or of a channel, takes 8 bytes for each corner of the mesh.  When a face gets its
+/// second surface, about 200 bytes are kept for it, within Options::SetMemoryOfFaces(): further surfaces of the face, as in
+/// the frames of an animation, are a look-up.
 ///
 /// Any number of threads may call its functions at once.  std::bad_alloc passes through.
 class OPENSUBDIVHEX_API SurfaceFactory {
@@ -53,7 +94,7 @@ public:
     /// A face-varying channel.
     using FVarID = int;
 
-    /// \brief What all surfaces of a factory have in common, as in Bfr.
+    /// \brief Options of all surfaces of a factory, as in Bfr.
     class Options {
     public:
         /// Channel 0, and a cache of its own.
@@ -64,7 +105,7 @@ public:
             _defaultFVarID = id;
             return *this;
         }
-        /// That channel.
+        /// The channel that was set.
         FVarID GetDefaultFVarID() const { return _defaultFVarID; }
 
         /// Sets a cache to share, which must live as long as the factory; null: one of its own.
@@ -72,34 +113,33 @@ public:
             _externalCache = cache;
             return *this;
         }
-        /// That cache.
+        /// The cache that was set.
         SurfaceFactoryCache *GetExternalCache() const { return _externalCache; }
 
-        /// Sets the level whose cells are the patches that places of surfaces are evaluated by, 2 to 6: each
-        /// level has four times the patches, and about an eighth of the error.
+        /// Sets the level of the patches of Surface::Evaluate() at (u, v), 2 to 6: each level has four times the patches,
+        /// and about an eighth of the error.
         Options &SetApproxLevelSmooth(int level) {
             _approxLevelSmooth = level;
             return *this;
         }
-        /// That level; by default 3.
+        /// The level that was set; by default 3.
         int GetApproxLevelSmooth() const { return _approxLevelSmooth; }
-        /// Sets that of faces whose control points include a sharp or semi-sharp edge, a corner or a boundary.  Where
-        /// it differs from the smooth one, faces of both kinds agree about their edge within the error of the
-        /// coarser.
+        /// Sets this level for faces whose control points include a sharp or semi-sharp edge, a corner or a boundary.  If the
+        /// two levels differ, faces of both kinds agree about their edge within the error of the coarser one.
         Options &SetApproxLevelSharp(int level) {
             _approxLevelSharp = level;
             return *this;
         }
-        /// That level; by default 3.
+        /// The level that was set; by default 3.
         int GetApproxLevelSharp() const { return _approxLevelSharp; }
 
-        /// Sets the memory, in bytes, for what surfaces are made of, which is kept as long as the factory and
-        /// surfaces that it made.  What there is no memory for is found again for each surface.
+        /// Sets the memory, in bytes, that is kept for initialising surfaces of a face again.  Faces beyond it are gathered
+        /// again for each surface.
         Options &SetMemoryOfFaces(std::size_t memory) {
             _memoryOfFaces = memory;
             return *this;
         }
-        /// That memory; by default 64 mebibytes, enough for some 300,000 faces.
+        /// The memory that was set; by default 64 mebibytes, enough for about 300,000 faces.
         std::size_t GetMemoryOfFaces() const { return _memoryOfFaces; }
 
     private:
@@ -118,11 +158,15 @@ public:
     static std::unique_ptr<SurfaceFactory> Create(FarExt::TopologyRefiner const &refiner,
                                                   Options options,
                                                   FarExt::CallStatus *status = nullptr);
-    /// The same with the default options.
+    /// Overload with default options.
     static std::unique_ptr<SurfaceFactory> Create(FarExt::TopologyRefiner const &refiner,
                                                   FarExt::CallStatus *status = nullptr) {
         return Create(refiner, Options(), status);
     }
+    /// \brief One of the same mesh with other options, which need not look at the mesh again.
+    ///
+    /// Its refiner must live as long; this factory need not.
+    std::unique_ptr<SurfaceFactory> CreateWith(Options options) const;
     ~SurfaceFactory();
 
     SurfaceFactory(SurfaceFactory const &) = delete;
@@ -151,6 +195,8 @@ public:
     ///                a face with more than 1,024 vertices.  At a non-manifold vertex that is a corner for
     ///                ever, as a pole that faces name twice, the faces of each fan count by themselves, up to 4,096
     bool FaceHasLimitSurface(Index face, FarExt::CallStatus *status = nullptr) const;
+    /// The same but for vertices of many faces, whose limits take long to find.
+    FarExt::CallStatus CheckFace(Index face) const;
     /// The parameterization of a face, which is in range.
     Parameterization GetFaceParameterization(Index face) const;
 
@@ -171,7 +217,7 @@ public:
     template <typename REAL>
     bool InitFaceVaryingSurface(Index face, Surface<REAL> *surface, FVarID channel,
                                 FarExt::CallStatus *status = nullptr) const;
-    /// The same for the default channel.
+    /// Overload for the default channel.
     template <typename REAL>
     bool InitFaceVaryingSurface(Index face, Surface<REAL> *surface,
                                 FarExt::CallStatus *status = nullptr) const {
@@ -225,35 +271,38 @@ public:
     }
     /// @}
 
-private:
+    /// \brief Makes any of these, without telling an error callback where the face has none.
+    ///
+    /// \param face           whose surface it is
+    /// \param interpolation  how the data are refined
+    /// \param channel        of face-varying data, in range; -1: data of vertices
+    /// \param surface        is invalid on failure
+    /// \param isKept         whether what the surface is made of may be kept for the next one of the face
     template <typename REAL>
-    friend class PatchStream;
-    friend class View;
-    friend class internal::StreamTypes;
+    FarExt::CallStatus TryInit(Index face, FarExt::Interpolation interpolation, int channel,
+                               Surface<REAL> &surface, bool isKept = true) const;
+
+private:
+    struct FaceMaker;
 
     SurfaceFactory(FarExt::TopologyRefiner const &refiner, Options options);
-    // One with other options, to which this mesh need not be looked at again.
     SurfaceFactory(SurfaceFactory const &other, Options options);
 
     void setTypes();
     int getPatchLevel(internal::BaseType const &type) const;
     bool hasRefinedAgain() const;
     FarExt::CallStatus checkIsFace(Index face) const;
-    FarExt::CallStatus checkFace(Index face) const;
     FarExt::CallStatus checkCrowd(Index face, int channel, Index levelFace) const;
     internal::CellType const *findType(int channel, Index levelFace, Index face,
                                        FarExt::Interpolation interpolation,
                                        std::vector<Index> &points,
                                        FarExt::CallStatus &status) const;
-    // With the causes of the public functions, which report them; a channel is in range, -1: none.
-    // Nothing is kept.
+    FarExt::CallStatus makeFace(Index face, FarExt::Interpolation interpolation, int channel,
+                                FaceMaker &maker,
+                                internal::KeptFace<internal::BaseType> const *&made) const;
     template <typename REAL>
-    FarExt::CallStatus init(Index face, FarExt::Interpolation interpolation, int channel,
-                            Surface<REAL> &surface) const;
-    // The same with what is kept.
-    template <typename REAL>
-    FarExt::CallStatus initKept(Index face, FarExt::Interpolation interpolation, int channel,
-                                Surface<REAL> &surface) const;
+    void set(internal::KeptFace<internal::BaseType> const &face, bool isKept,
+             Surface<REAL> &surface) const;
 
     FarExt::TopologyRefiner const &_refiner;
     FarExt::TopologyLevel const _level;
@@ -263,8 +312,7 @@ private:
     std::vector<std::shared_ptr<internal::FaceWalk>> _walks; // of the mesh, and of each channel
     std::array<internal::PlainFaceTypes *, 2> _plainTypes{}; // by interpolation
     // The faces that are kept: of the mesh, by interpolation, and then of each channel.
-    using KeptFaces = internal::KeptFaces<internal::BaseType>;
-    KeptFaces *_kept = nullptr;
+    internal::KeptFaces<internal::BaseType> *_kept = nullptr;
     std::shared_ptr<void const> _owner; // of these and of the types, as surfaces have it
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "surfaceFactoryCache.h"
+#include "surfaceFactory.h"
 
 #include "cell/cellType.h"
 

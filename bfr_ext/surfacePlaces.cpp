@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "surfacePlaces.h"
 
+#include "far_ext/stencil/interpolationMode.h"
 #include "far_ext/vtr/parallel.h"
+#include "far_ext/vtr/report.h"
 
 #include <algorithm>
 #include <numeric>

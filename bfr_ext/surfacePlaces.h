@@ -11,12 +11,16 @@
 
 namespace OpenSubdivHex::BfrExt {
 
-/// \brief Places of any faces of a mesh, in any order, that are evaluated together: ray hits, samples of a texture
-/// or of light, or roots of hair, which follow an animation.
+/// \brief Evaluates many points (face, u, v) of a mesh at once, in any order: hair roots, ray hits, samples of textures or
+/// light, frame after frame.
 ///
-/// Each point is that of Surface::Evaluate() at a (u, v) of a face.  Patch points of a face are made once for all of
-/// its places, whatever the order, and given up behind it: memory is that of the places, and of the surfaces that
-/// they lie on.  Threads share the faces (FarExt::SetExecutor()); results have the same bits for any number of these.
+/// \code
+///     auto roots = BfrExt::SurfacePlaces<float>::Create(*factory, numRoots, faces, uvs);
+///     roots->Evaluate(positions, 3, points, du, dv, 3); // each frame
+/// \endcode
+///
+/// Results are those of Surface::Evaluate().  Patch points of a face are made once for all of its points, and then freed.
+/// Threads share the faces (FarExt::SetExecutor()); results have the same bits for any number of threads.
 ///
 /// Nothing is changed after construction: several threads may use it.  std::bad_alloc passes through.
 template <typename REAL>
@@ -27,37 +31,37 @@ public:
     /// The size and distance of points.
     using PointDescriptor = typename Surface<REAL>::PointDescriptor;
 
-    /// \brief What the points are.
+    /// \brief The kind of data.
     struct Options {
         FarExt::StencilMode interpolationMode =
             FarExt::INTERPOLATE_VERTEX; ///< how points are refined
         int fvarChannel = 0;            ///< of face-varying points
     };
 
-    /// \brief Finds the surfaces of places.
+    /// \brief Finds the surfaces of the points.
     ///
     /// \param factory    which need not live on
     /// \param numPlaces  how many there are, 0 or more
     /// \param faces      by place, a face of factory.GetLevel()
     /// \param uvs        by place, u and v in that face
     /// \param options    what points are evaluated
-    /// \param status     of a face without a surface, as SurfaceFactory has it: none of the places is evaluated then
+    /// \param status     names a face without a surface; no point is evaluated then
     /// \return           null on failure
     static std::unique_ptr<SurfacePlaces> Create(SurfaceFactory const &factory, int numPlaces,
                                                  Index const faces[], REAL const uvs[],
                                                  Options options,
                                                  FarExt::CallStatus *status = nullptr);
-    /// The same of vertex points.
+    /// Overload for vertex points.
     static std::unique_ptr<SurfacePlaces> Create(SurfaceFactory const &factory, int numPlaces,
                                                  Index const faces[], REAL const uvs[],
                                                  FarExt::CallStatus *status = nullptr) {
         return Create(factory, numPlaces, faces, uvs, Options(), status);
     }
 
-    /// How many places there are.
+    /// Number of points.
     int GetNumPlaces() const { return int(_places.size()); }
 
-    /// \brief Writes the points at all places, in the order in which these were given.
+    /// \brief Writes the points, in the order of Create().
     ///
     /// \param meshPoints     of factory.GetLevel(): of its vertices, or values of the channel
     /// \param meshPointDesc  the size of a point, and the distance from one to the next
@@ -65,7 +69,7 @@ public:
     /// \param resultDesc     the distance from one point to the next
     void Evaluate(REAL const meshPoints[], PointDescriptor const &meshPointDesc, REAL p[],
                   PointDescriptor const &resultDesc) const;
-    /// The same with first derivatives.
+    /// Overload with first derivatives.
     void Evaluate(REAL const meshPoints[], PointDescriptor const &meshPointDesc, REAL p[],
                   REAL du[], REAL dv[], PointDescriptor const &resultDesc) const;
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "view.h"
 
-#include "cell/cellMeasures.h"
-#include "cell/cellType.h"
+#include "cell/baseType.h"
+#include "cell/cellGrid.h"
 
 #include "far_ext/vtr/hierarchy.h"
 #include "far_ext/vtr/parallel.h"
@@ -51,9 +51,11 @@ public:
         for (std::size_t i = 0; i < 2; ++i) {
             Vector3 const &axis = i == 0 ? rightAxis : upAxis;
             double const slope = i == 0 ? side : top;
-            _planes[2 * i] = Subtract(axis, Scale(_forward, slope));
-            _planes[2 * i + 1] = Subtract(Scale(axis, -1), Scale(_forward, slope));
+            double const scale = 1 / std::sqrt(1 + slope * slope);
+            _planes[2 * i] = Scale(Subtract(axis, Scale(_forward, slope)), scale);
+            _planes[2 * i + 1] = Scale(Subtract(Scale(axis, -1), Scale(_forward, slope)), scale);
         }
+        _planes[4] = Scale(_forward, -1);
         _pixelsAtDepth1 = camera.height / (2 * top);
         _largestSecant = std::sqrt(1 + top * top + side * side);
         return std::isfinite(_pixelsAtDepth1) && std::isfinite(_largestSecant);
@@ -61,106 +63,113 @@ public:
 
     Vector3 const &GetEye() const { return _eye; }
 
-    /// Whether a box is outside of the picture, or behind the eye.
-    bool IsOutside(Box const &box) const {
-        Vector3 const toLeast = Subtract(box.least, _eye);
-        Vector3 const toLargest = Subtract(box.largest, _eye);
-        auto const isBeyond = [&](Vector3 const &outwards) {
-            return getLeast(outwards, toLeast, toLargest) > 0;
-        };
-        return std::any_of(std::begin(_planes), std::end(_planes), isBeyond) ||
-               isBeyond(Scale(_forward, -1));
+    /// Whether a ball is outside of the picture, or behind the eye.
+    bool IsOutside(Ball const &ball) const {
+        Vector3 const d = Subtract(ball.center, _eye);
+        return std::any_of(_planes.begin(), _planes.end(),
+                           [&](Vector3 const &outwards) { return Dot(outwards, d) > ball.radius; });
     }
 
-    /// \brief How many pixels long a line of length 1 in a box is at most.
+    /// The same of the hull of some points.
+    bool IsOutside(double const *points, std::size_t stride, int numPoints) const {
+        return std::any_of(_planes.begin(), _planes.end(), [&](Vector3 const &outwards) {
+            int i = 0;
+            while (i < numPoints &&
+                   Dot(outwards, Subtract(ToVector3(points + std::size_t(i) * stride), _eye)) > 0) {
+                ++i;
+            }
+            return i == numPoints;
+        });
+    }
+
+    /// \brief How many pixels long a line of length 1 in a ball is at most.
     ///
-    /// A piece of it at depth z, and by an angle with the secant s away from the axis, has s/z times the
-    /// pixels that it would have at depth 1.  Or, at distance r = s z, s^2/r times these.  Secants are largest
-    /// at corners of the box, since places where they are no larger than a number are a convex cone.
-    double GetPixelsPerUnit(Box const &box) const {
-        Vector3 const toLeast = Subtract(box.least, _eye);
-        Vector3 const toLargest = Subtract(box.largest, _eye);
-        Vector3 nearest;
-        for (std::size_t k = 0; k < 3; ++k) {
-            nearest[k] = std::max({toLeast[k], -toLargest[k], 0.0});
-        }
-        double const byDistance = _largestSecant * _largestSecant / GetLength(nearest);
-        double const leastDepth = getLeast(_forward, toLeast, toLargest);
-        if (!(leastDepth > 0)) {
+    /// A piece of it at depth z and distance r, so by an angle with the secant s = r/z away from the axis, has s/z times
+    /// the pixels that it would have at depth 1: r/z^2 or s^2/r times these.
+    double GetPixelsPerUnit(Ball const &ball) const {
+        Vector3 const d = Subtract(ball.center, _eye);
+        double const distance = GetLength(d);
+        double const least = std::max(distance - ball.radius, 0.0);
+        double const byDistance = _largestSecant * _largestSecant / least;
+        double const depth = Dot(_forward, d) - ball.radius;
+        if (!(depth > 0)) {
             return _pixelsAtDepth1 * byDistance;
         }
-        // What each axis adds to the depth and to the square of the distance, at either end.
-        Vector3 depths[2];
-        Vector3 squares[2];
-        for (std::size_t k = 0; k < 3; ++k) {
-            depths[0][k] = _forward[k] * toLeast[k];
-            depths[1][k] = _forward[k] * toLargest[k];
-            squares[0][k] = toLeast[k] * toLeast[k];
-            squares[1][k] = toLargest[k] * toLargest[k];
-        }
-        constexpr unsigned kNumCorners = 8;
-        double ofCorners[kNumCorners]; // squares of secants
-        for (unsigned corner = 0; corner < kNumCorners; ++corner) {
-            unsigned const ends[3] = {corner & 1U, corner >> 1U & 1U, corner >> 2U};
-            double const depth = depths[ends[0]][0] + depths[ends[1]][1] + depths[ends[2]][2];
-            double const square = squares[ends[0]][0] + squares[ends[1]][1] + squares[ends[2]][2];
-            ofCorners[corner] = square / (depth * depth);
-        }
-        double const largestSquare =
-            std::max(1.0, *std::max_element(std::begin(ofCorners), std::end(ofCorners)));
-        double const byDepth = std::min(std::sqrt(largestSquare), _largestSecant) / leastDepth;
-        return _pixelsAtDepth1 * std::min(byDepth, byDistance);
+        double const secant = std::min((distance + ball.radius) / depth, _largestSecant);
+        return _pixelsAtDepth1 * std::min(secant / depth, byDistance);
     }
 
 private:
-    // The least product with a direction, of all places of a box.
-    static double getLeast(Vector3 const &direction, Vector3 const &least, Vector3 const &largest) {
-        double sum = 0;
-        for (std::size_t k = 0; k < 3; ++k) {
-            sum += std::min(direction[k] * least[k], direction[k] * largest[k]);
-        }
-        return sum;
-    }
-
     Vector3 _eye = {};
     Vector3 _forward = {};
-    std::array<Vector3, 4> _planes = {}; // through the eye and the sides of the picture, outwards
+    std::array<Vector3, 5> _planes = {}; // through the eye, and the sides of the picture, outwards
     double _pixelsAtDepth1 = 0;
     double _largestSecant = 1; // of the angles between the axis and what is in the picture
 };
 
-namespace {
-
-/// That of a cell's points.
-Box getBox(CellValues const &values) {
-    Box box;
-    for (int i = 0; i < values.GetNumPoints(); ++i) {
-        box.Add(values.GetPoint(i));
+/// A base face with its control points, of three numbers each.
+class FaceToMeasure {
+public:
+    /// Sets it, the first three numbers of its points being read.
+    template <typename REAL>
+    void Set(BaseType const &type, REAL const *points, std::ptrdiff_t stride,
+             std::size_t numPoints) {
+        _type = type;
+        _points.resize(3 * numPoints);
+        for (std::size_t i = 0; i < _points.size(); i += 3, points += stride) {
+            for (std::size_t k = 0; k < 3; ++k) {
+                _points[i + k] = double(points[k]);
+            }
+        }
     }
-    return box;
-}
 
-/// Writes the cell of a base face.
-using SetBase = std::function<void(RefinedCells &)>;
+    void SetCells(RefinedCells &cells) const {
+        useType([&](auto const &type) { cells.SetBase(type, _points.data(), 3); });
+    }
+    void Sample(CellGrid &grid, RefinedCells &cells, std::vector<double> &samples) const {
+        useType([&](auto const &type) { grid.Sample(type, _points.data(), cells, samples); });
+    }
+    bool IsSharp() const { return _type.IsSharp(); }
+    /// Whether the hull of its points is outside of the picture, which contains the surface.
+    bool IsOutside(ViewGeometry const &geometry) const {
+        return geometry.IsOutside(_points.data(), 3, int(_points.size() / 3));
+    }
+
+private:
+    template <typename FUNCTION>
+    void useType(FUNCTION const &function) const {
+        if (PlainFaceType const *const plain = _type.GetPlain()) {
+            function(*plain);
+        } else {
+            function(*_type);
+        }
+    }
+
+    BaseType _type;
+    std::vector<double> _points;
+};
+
+namespace {
 
 /// \brief Refines one face.
 ///
-/// Cells are made where something is asked of them that is not known yet.
+/// Cells are measured together with their children where these are refined, from the base face on; the children of these
+/// children where they are not expected to be flat.
 class TreeMaker {
 public:
-    /// \param setBase   is called once at most
+    /// \param getBase   is called where something is not known
     /// \param measures  those of the face, which it adds to
-    TreeMaker(ViewGeometry const &geometry, View::Options const &options, SetBase const &setBase,
-              FaceMeasures &measures, CellTree const *previous, CellTree &tree,
-              std::vector<CellVisibility> *visibility)
-        : _geometry(geometry), _options(options), _setBase(setBase), _measures(measures),
+    TreeMaker(ViewGeometry const &geometry, View::Options const &options,
+              std::function<FaceToMeasure const &()> const &getBase, FaceMeasures &measures,
+              CellTree const *previous, CellTree &tree, std::vector<CellVisibility> *visibility)
+        : _geometry(geometry), _options(options), _getBase(getBase), _measures(measures),
           _previous(previous), _tree(tree), _visibility(visibility) {}
 
     void Make() {
         if (_measures.cells.empty()) {
             _measures.cells.emplace_back();
         }
-        Node base = {nullptr, 0, true, 0};
+        Node base = {nullptr, 0, true, true, 0};
         visit(base, 0, _previous ? 0 : -1);
     }
 
@@ -172,31 +181,41 @@ private:
         Node *parent;
         int child; ///< which of that
         bool isWhole;
+        bool isMeasuredFirst; ///< with its children; others with their parents
         std::size_t measures;
         std::size_t cell = kNotMade;
+        double pixels = 0; ///< of a line of length 1
     };
 
     void visit(Node &node, int treeCell, int previousCell) {
-        CellVisibility const found = find(node);
+        CellVisibility const found = _options.IsCulling() ? find(node) : CellVisibility::Visible;
         if (_visibility) {
             _visibility->resize(std::size_t(_tree.GetNumCells()));
             (*_visibility)[std::size_t(treeCell)] = found;
         }
+        auto const getFraction = [&](int cell) {
+            return cell >= 0 && _previous->IsRefined(cell) ? _options.GetHysteresis() : 1;
+        };
         if (found != CellVisibility::Visible ||
-            _tree.GetLevel(treeCell) >= _options.GetMaxLevel()) {
+            _tree.GetLevel(treeCell) >= _options.GetMaxLevel() ||
+            !isTooLarge(node, getFraction(previousCell))) {
             return;
         }
         bool const wasRefined = previousCell >= 0 && _previous->IsRefined(previousCell);
-        if (!isToRefine(node, wasRefined ? _options.GetHysteresis() : 1)) {
-            return;
-        }
+        int const firstPrevious = wasRefined ? _previous->GetFirstChild(previousCell) : -1;
         int const first = _tree.Refine(treeCell);
         int const numChildren = getNumChildren(node);
         for (int i = 0; i < numChildren; ++i) {
-            Node child = makeChild(node, i);
+            int const previousChild = wasRefined ? firstPrevious + i : -1;
+            if (!node.isMeasuredFirst &&
+                areChildrenExpectedToBeFlat(node, getFraction(previousChild))) {
+                continue;
+            }
+            Node child = {&node, i, node.isWhole && i == 0, !node.isMeasuredFirst,
+                          std::size_t(findChildren(node) + i)};
             bool const areMade = node.cell != kNotMade && _cells.HasChildren(node.cell);
             std::size_t const numCells = _cells.GetSize();
-            visit(child, first + i, wasRefined ? _previous->GetFirstChild(previousCell) + i : -1);
+            visit(child, first + i, previousChild);
             if (areMade) {
                 _cells.Drop(numCells); // what was made within the child
             }
@@ -207,21 +226,19 @@ private:
         return node.isWhole ? _tree.GetFaceSize() + 1 : 4;
     }
 
-    Node makeChild(Node &parent, int child) {
-        int first = getMeasures(parent).firstChild;
-        if (first == 0) {
-            first = int(_measures.cells.size());
-            getMeasures(parent).firstChild = first;
-            _measures.cells.resize(_measures.cells.size() + std::size_t(getNumChildren(parent)));
-        }
-        return {&parent, child, parent.isWhole && child == 0, std::size_t(first + child)};
-    }
-
     CellMeasures &getMeasures(Node const &node) { return _measures.cells[node.measures]; }
+
+    int findChildren(Node const &node) {
+        if (getMeasures(node).firstChild == 0) {
+            getMeasures(node).firstChild = int(_measures.cells.size());
+            _measures.cells.resize(_measures.cells.size() + std::size_t(getNumChildren(node)));
+        }
+        return getMeasures(node).firstChild;
+    }
 
     std::size_t makeCell(Node &node) {
         if (node.cell == kNotMade && !node.parent) {
-            _setBase(_cells);
+            _getBase().SetCells(_cells);
             node.cell = RefinedCells::kBase;
         } else if (node.cell == kNotMade) {
             node.cell = _cells.GetFirstChild(makeCell(*node.parent)) + std::size_t(node.child);
@@ -229,37 +246,31 @@ private:
         return node.cell;
     }
 
-    CellValues const &makeValues(Node &node) { return _cells[makeCell(node)]; }
-
-    Box const &findBox(Node &node) {
-        if (!getMeasures(node).box.HasPoints()) {
-            Box const box = getBox(makeValues(node));
-            getMeasures(node).box = box;
+    CellMeasures const &measure(Node &node) {
+        if (getMeasures(node).thickness >= 0) {
+            return getMeasures(node);
         }
-        return getMeasures(node).box;
-    }
-
-    CellVisibility find(Node &node) {
-        if (!_options.IsCulling()) {
-            return CellVisibility::Visible;
+        if (!node.isMeasuredFirst) {
+            sample(*node.parent);
+            _grid->MeasureChildren(_samples, getMeasures(*node.parent), _isSharp,
+                                   &_measures.cells[std::size_t(findChildren(*node.parent))]);
+            return getMeasures(node);
         }
-        if (_geometry.IsOutside(findBox(node))) {
-            return CellVisibility::Outside;
-        }
-        return findFacing(node).IsBackFacing(_geometry.GetEye()) ? CellVisibility::BackFacing
-                                                                 : CellVisibility::Visible;
+        sample(node);
+        _grid->Measure(_samples, getMeasures(node));
+        return getMeasures(node);
     }
 
     CellFacing const &findFacing(Node &node) {
         if (getMeasures(node).facing < 0) {
-            // Needles may be folded inside of a face.
-            int const numSteps = node.parent ? 2 : 3;
+            sample(node.isMeasuredFirst ? node : *node.parent);
             CellFacing::Maker maker;
-            addPolygons(makeCell(node), numSteps, maker);
-            for (int corner = 0; corner < getNumCorners(makeCell(node)); ++corner) {
+            _grid->AddPolygons(_samples, node.isMeasuredFirst ? 0 : 1 + node.child, maker);
+            std::size_t const cell = makeCell(node);
+            for (int corner = 0; corner < _cells[cell].GetType().GetNumCorners(); ++corner) {
                 double du[3];
                 double dv[3];
-                _cells.EvaluateCorner(makeCell(node), corner, du, dv);
+                _cells.EvaluateCorner(cell, corner, du, dv);
                 maker.AddNormal(Cross(ToVector3(du), ToVector3(dv)));
             }
             getMeasures(node).facing = int(_measures.facings.size());
@@ -268,83 +279,100 @@ private:
         return _measures.facings[std::size_t(getMeasures(node).facing)];
     }
 
-    // Adds those of the cells that some steps make of a cell.
-    void addPolygons(std::size_t cell, int numSteps, CellFacing::Maker &maker) {
-        if (numSteps == 0) {
-            findCorners(cell);
-            maker.Add(_corners);
+    // Of a cell that is measured first.
+    void sample(Node &node) {
+        if (_sampled == node.measures) {
             return;
         }
-        std::size_t const first = _cells.GetFirstChild(cell);
-        for (int i = 0; i < _cells.GetNumChildren(cell); ++i) {
-            addPolygons(first + std::size_t(i), numSteps - 1, maker);
+        _sampled = node.measures;
+        _grid = &CellGrid::Get(node.isWhole ? _tree.GetFaceSize() : 0);
+        if (node.parent) {
+            std::size_t const cell = makeCell(node);
+            _isSharp = _cells[cell].GetType().IsSharp();
+            _grid->Sample(_cells, cell, _samples);
+        } else {
+            _isSharp = _getBase().IsSharp();
+            _getBase().Sample(*_grid, _cells, _samples);
         }
     }
 
-    int getNumCorners(std::size_t cell) const {
-        CellValues const &values = _cells[cell];
-        return values.IsPlainBase() ? values.GetNumChildren() - 1
-                                    : values.GetType().GetNumCorners();
+    double findPixels(Node &node) {
+        if (node.pixels == 0) {
+            node.pixels = _geometry.GetPixelsPerUnit(measure(node).ball);
+        }
+        return node.pixels;
     }
 
-    void findCorners(std::size_t cell) {
-        int const numCorners = getNumCorners(cell);
-        _corners.resize(3 * std::size_t(numCorners));
-        for (int i = 0; i < numCorners; ++i) {
-            _cells.EvaluateCorner(cell, i, &_corners[3 * std::size_t(i)]);
+    // Whole faces, which may be folded, never face away, and are outside where their edges are.
+    CellVisibility find(Node &node) {
+        if (!node.parent) {
+            return _getBase().IsOutside(_geometry) ? CellVisibility::Outside
+                                                   : CellVisibility::Visible;
         }
+        if (_geometry.IsOutside(measure(node).ball)) {
+            return CellVisibility::Outside;
+        }
+        return findFacing(node).IsBackFacing(_geometry.GetEye()) ? CellVisibility::BackFacing
+                                                                 : CellVisibility::Visible;
     }
 
-    bool isToRefine(Node &node, double fraction) {
-        double const pixels = _geometry.GetPixelsPerUnit(findBox(node));
-        if (_options.GetEdgeLength() > 0 &&
-            findLongestSide(node) * pixels > fraction * _options.GetEdgeLength()) {
-            return true;
-        }
-        return _options.GetFlatness() > 0 &&
-               findThickness(node) * pixels > fraction * _options.GetFlatness();
+    // Whether children need not be measured, which are with their own.
+    bool areChildrenExpectedToBeFlat(Node &node, double fraction) {
+        return !(_options.GetEdgeLength() > 0) &&
+               measure(node).childThickness * findPixels(node) <= fraction * _options.GetFlatness();
     }
 
-    double findLongestSide(Node &node) {
-        if (getMeasures(node).longestSide < 0) {
-            findCorners(makeCell(node));
-            double longest = 0;
-            for (std::size_t i = 0; i < _corners.size(); i += 3) {
-                std::size_t const next = i + 3 < _corners.size() ? i + 3 : 0;
-                Vector3 const side = Subtract(ToVector3(&_corners[next]), ToVector3(&_corners[i]));
-                longest = std::max(longest, GetLength(side));
-            }
-            getMeasures(node).longestSide = longest;
-        }
-        return getMeasures(node).longestSide;
-    }
-
-    double findThickness(Node &node) {
-        if (getMeasures(node).thickness < 0) {
-            findCorners(makeCell(node));
-            double const thickness = _flatness.FindThickness(_cells, node.cell, _corners);
-            getMeasures(node).thickness = thickness;
-        }
-        return getMeasures(node).thickness;
+    bool isTooLarge(Node &node, double fraction) {
+        double const pixels = findPixels(node);
+        return (_options.GetEdgeLength() > 0 &&
+                measure(node).longestSide * pixels > fraction * _options.GetEdgeLength()) ||
+               (_options.GetFlatness() > 0 &&
+                measure(node).thickness * pixels > fraction * _options.GetFlatness());
     }
 
     ViewGeometry const &_geometry;
     View::Options const &_options;
-    SetBase const &_setBase;
+    std::function<FaceToMeasure const &()> const &_getBase;
     FaceMeasures &_measures;
     CellTree const *const _previous;
     CellTree &_tree;
     std::vector<CellVisibility> *const _visibility;
+    CellGrid *_grid = nullptr; // of the cell that was sampled last
+    std::size_t _sampled = std::size_t(-1);
+    bool _isSharp = false; // whether something sharp is near that
     RefinedCells &_cells = getCellsOfThread();
-    std::vector<double> _corners; // of the surface, of the cell that is looked at
-    Flatness _flatness;
+    std::vector<double> &_samples = getSamplesOfThread();
 
-    // What they have taken of memory is kept for the next face.
+    // Their memory is kept for the next face.
     static RefinedCells &getCellsOfThread() {
         static thread_local RefinedCells cells;
         return cells;
     }
+    static std::vector<double> &getSamplesOfThread() {
+        static thread_local std::vector<double> samples;
+        return samples;
+    }
 };
+
+/// A ball around some points.
+Ball findBall(double const *points, std::size_t stride, int numPoints) {
+    auto const forEach = [&](auto const &function) {
+        double const *point = points;
+        for (int i = 0; i < numPoints; ++i, point += stride) {
+            function(ToVector3(point));
+        }
+    };
+    Ball ball;
+    forEach([&](Vector3 const &point) { ball.center = Add(ball.center, point); });
+    ball.center = Scale(ball.center, 1.0 / numPoints);
+    double square = 0;
+    forEach([&](Vector3 const &point) {
+        Vector3 const d = Subtract(point, ball.center);
+        square = std::max(square, Dot(d, d));
+    });
+    ball.radius = std::sqrt(square);
+    return ball;
+}
 
 /// \brief Refines an edge, whose points depend on its curve alone.
 ///
@@ -365,9 +393,9 @@ public:
 private:
     // Adds the places inside of a part, which lie between start and end.
     void visit(CellValues const &values, int start, int end) {
-        Box const box = getBox(values);
         if (values.GetLevel() >= _options.GetMaxLevel() ||
-            (_options.IsCulling() && _geometry.IsOutside(box))) {
+            (_options.IsCulling() && _geometry.IsOutside(values.GetPoint(0), values.GetPaddedSize(),
+                                                         values.GetNumPoints()))) {
             return;
         }
         std::vector<CellType::Child> const &children = values.GetType().GetChildren();
@@ -381,7 +409,9 @@ private:
         }
         int const first = start + (end - start) / 4;
         int const second = end - (end - start) / 4;
-        if (!isToDivide(values, parts, _geometry.GetPixelsPerUnit(box),
+        Ball const ball =
+            findBall(values.GetPoint(0), values.GetPaddedSize(), values.GetNumPoints());
+        if (!isToDivide(values, parts, _geometry.GetPixelsPerUnit(ball),
                         wasDividedAt(first) ? _options.GetHysteresis() : 1)) {
             return;
         }
@@ -403,11 +433,21 @@ private:
         double ends[6];
         values.EvaluateCorner(0, ends);
         values.EvaluateCorner(1, ends + 3);
-        double const length = GetLength(Subtract(ToVector3(ends + 3), ToVector3(ends)));
-        return (_options.GetEdgeLength() > 0 &&
-                length * pixels > fraction * _options.GetEdgeLength()) ||
-               (_options.GetFlatness() > 0 &&
-                !IsStraight(parts, ends, ends + 3, fraction * _options.GetFlatness() / pixels));
+        Vector3 const along = Subtract(ToVector3(ends + 3), ToVector3(ends));
+        double const length = GetLength(along);
+        if (_options.GetEdgeLength() > 0 && length * pixels > fraction * _options.GetEdgeLength()) {
+            return true;
+        }
+        // At a quarter of a curve that bends evenly, where parts meet, it has three quarters of its distance.
+        constexpr double kFactor = 1.5;
+        auto const isFar = [&](CellValues const &part) {
+            double point[3];
+            part.EvaluateCorner(1, point);
+            Vector3 const d = Subtract(ToVector3(point), ToVector3(ends));
+            double const distance = length > 0 ? GetLength(Cross(along, d)) / length : GetLength(d);
+            return kFactor * distance * pixels > fraction * _options.GetFlatness();
+        };
+        return _options.GetFlatness() > 0 && (isFar(parts[0]) || isFar(parts[1]));
     }
 
     ViewGeometry const &_geometry;
@@ -419,21 +459,6 @@ private:
 } // namespace
 
 } // namespace internal
-
-namespace {
-
-// The first three numbers of some points.
-template <typename REAL>
-std::vector<double> gather(REAL const *points, std::ptrdiff_t stride, std::size_t numPoints) {
-    std::vector<double> result;
-    result.reserve(3 * numPoints);
-    for (std::size_t i = 0; i < numPoints; ++i, points += stride) {
-        result.insert(result.end(), points, points + 3);
-    }
-    return result;
-}
-
-} // namespace
 
 View::View(Camera const &camera, Options options) : _camera(camera), _options(options) {
     auto const isNumber = [](double number) { return std::isfinite(number) && number >= 0; };
@@ -452,43 +477,32 @@ CellTree View::MakeTree(Surface<REAL> const &surface, REAL const controlPoints[]
                         typename Surface<REAL>::PointDescriptor const &pointDesc,
                         CellTree const *previous, std::vector<CellVisibility> *visibility) const {
     internal::FaceMeasures measures;
-    return makeTree(
-        surface.GetFaceSize(),
-        [&](internal::RefinedCells &cells) {
-            setBase(surface, controlPoints, pointDesc.stride, cells);
-        },
-        measures, previous, visibility);
+    internal::FaceToMeasure base;
+    base.Set(surface.GetFace().type, controlPoints, pointDesc.stride,
+             std::size_t(surface.GetNumControlPoints()));
+    CellTree tree(surface.GetFaceSize());
+    refine(
+        tree, [&]() -> internal::FaceToMeasure const & { return base; }, measures, previous,
+        visibility);
+    return tree;
 }
 
-template <typename REAL>
-void View::setBase(Surface<REAL> const &surface, REAL const *controlPoints, std::ptrdiff_t stride,
-                   internal::RefinedCells &cells) {
-    std::vector<double> const points =
-        gather(controlPoints, stride, std::size_t(surface.GetNumControlPoints()));
-    if (internal::PlainFaceType const *const plain = surface._type.GetPlain()) {
-        cells.SetBase(*plain, points.data(), 3);
-    } else {
-        cells.SetBase(*surface._type, points.data(), 3);
-    }
-}
-
-CellTree View::makeTree(int faceSize, std::function<void(internal::RefinedCells &)> const &setBase,
-                        internal::FaceMeasures &measures, CellTree const *previous,
-                        std::vector<CellVisibility> *visibility) const {
-    CellTree tree(faceSize);
+// The tree has one cell before.
+void View::refine(CellTree &tree, std::function<internal::FaceToMeasure const &()> const &getBase,
+                  internal::FaceMeasures &measures, CellTree const *previous,
+                  std::vector<CellVisibility> *visibility) const {
     if (visibility) {
         visibility->clear();
     }
     if (IsValid()) {
-        bool const hasPrevious = previous && previous->GetFaceSize() == faceSize;
-        internal::TreeMaker(*_geometry, _options, setBase, measures,
+        bool const hasPrevious = previous && previous->GetFaceSize() == tree.GetFaceSize();
+        internal::TreeMaker(*_geometry, _options, getBase, measures,
                             hasPrevious ? previous : nullptr, tree, visibility)
             .Make();
     }
     if (visibility) {
         visibility->resize(std::size_t(tree.GetNumCells()));
     }
-    return tree;
 }
 
 template <typename REAL>
@@ -499,7 +513,7 @@ Polyline View::MakeEdge(Surface<REAL> const &surface, int edge, REAL const contr
         return Polyline();
     }
     internal::CellType::BorderItem const &item =
-        surface._type->GetBorderItem(surface.getTurns(), std::size_t(edge));
+        surface.GetFace().type->GetBorderItem(surface.GetFace().GetTurns(), std::size_t(edge));
     std::vector<double> points;
     for (int const point : item.points) {
         REAL const *const from = controlPoints + std::ptrdiff_t(point) * pointDesc.stride;
@@ -559,15 +573,18 @@ public:
         if (face != _face) {
             _face = face;
             _surface.Clear();
-            if (_factory.initKept(face, FarExt::Interpolation::Vertex, -1, _surface).IsOk()) {
-                _points.resize(3 * std::size_t(_surface.GetNumControlPoints()));
+            if (_factory.TryInit(face, FarExt::Interpolation::Vertex, -1, _surface).IsOk()) {
+                auto const numPoints = std::size_t(_surface.GetNumControlPoints());
+                _points.resize(3 * numPoints);
                 _surface.GatherControlPoints(_meshPoints, {3, int(_stride)}, _points.data(), 3);
+                _base.Set(_surface.GetFace().type, _points.data(), 3, numPoints);
             }
         }
         return _surface.IsValid();
     }
     Surface<REAL> const &Get() const { return _surface; }
     REAL const *GetControlPoints() const { return _points.data(); }
+    internal::FaceToMeasure const &GetBase() const { return _base; }
 
 private:
     SurfaceFactory const &_factory;
@@ -576,6 +593,7 @@ private:
     Index _face = Far::INDEX_INVALID;
     Surface<REAL> _surface;
     std::vector<REAL> _points;
+    internal::FaceToMeasure _base;
 };
 
 template <typename REAL>
@@ -611,15 +629,12 @@ CellForest View::makeForest(SurfaceFactory const &factory, ViewBounds *bounds,
                 }
                 std::size_t const memory = measures.GetMemory();
                 CellTree const *const last = hasPrevious ? &previous->GetTree(face) : nullptr;
-                auto const setBase = [&](internal::RefinedCells &cells) {
+                auto const getBase = [&]() -> internal::FaceToMeasure const & {
                     state.surface.Init(face);
-                    View::setBase(state.surface.Get(), state.surface.GetControlPoints(), 3, cells);
+                    return state.surface.GetBase();
                 };
-                CellTree tree = makeTree(level.GetFaceSize(face), std::cref(setBase), measures,
-                                         last, counts ? &visibility[std::size_t(face)] : nullptr);
-                if (tree.IsRefined(0)) {
-                    forest.SetTree(face, std::move(tree));
-                }
+                refine(forest._trees[std::size_t(face)], std::cref(getBase), measures, last,
+                       counts ? &visibility[std::size_t(face)] : nullptr);
                 if (bounds) {
                     bounds->trim(face, memory);
                 }

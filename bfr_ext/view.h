@@ -13,12 +13,12 @@
 namespace OpenSubdivHex::BfrExt {
 
 namespace internal {
-class RefinedCells;
+class FaceToMeasure;
 class ViewGeometry;
 struct FaceMeasures;
 } // namespace internal
 
-/// \brief A pinhole camera, as glTF and USD have it: what is in the picture, and how large.
+/// \brief A pinhole camera, as in glTF and USD.
 struct Camera {
     double eye[3] = {0, 0, 1};    ///< where it is
     double target[3] = {0, 0, 0}; ///< what is in the middle of the picture
@@ -30,19 +30,27 @@ struct Camera {
     int height = 720;        ///< pixels
 };
 
-/// What is known of a cell in a view.
+/// The decision of a view about a cell.
 enum class CellVisibility : unsigned char {
     Visible,    ///< or perhaps so
     Outside,    ///< of the picture, all of it
     BackFacing, ///< all of it
 };
 
-/// \brief How far base faces are refined to look smooth in a view: trees of cells.
+/// \brief Refines base faces only as far as a camera sees: makes trees of cells.
+///
+/// \code
+///     BfrExt::Camera camera;
+///     camera.eye[2] = 5;
+///     BfrExt::View const view(camera, BfrExt::View::Options().SetFlatness(0.5)); // half a pixel
+///     BfrExt::CellForest const forest = view.MakeForest(*factory, positions, 3);
+/// \endcode
 ///
 /// **Flatness.**  A cell is refined until its facets are closer to the surface than some pixels.  That is
-/// estimated: the surface is known at the corners of the cells two steps on, and the range of the heights of these
-/// over the plane of the cell's corners, an eighth longer for what lies between, is taken for the distance.  It
-/// is seen at the least depth, and furthest from the axis, that the box of the control points has in the picture.
+/// estimated: the surface is known at the corners of the cells one or two steps on, and the range of the heights of
+/// these over the plane of the cell's corners, some more for what lies between, is taken for the distance.  Where nothing
+/// sharp is near, every other level is expected to have a quarter of it.  It is seen at the least depth, and furthest from
+/// the axis, that a ball around the cell has in the picture.
 /// Sharp edges and boundaries, whose curve may bend in the plane of a cell, get points of their own
 /// (MakeEdge()).
 ///
@@ -54,11 +62,12 @@ enum class CellVisibility : unsigned char {
 /// **Lengths.**  A cell can be refined, too, until its sides are shorter than some pixels.
 ///
 /// **Culling** leaves cells as they are which are not seen: meshes stay closed, and what is culled is coarse.  A
-/// cell is outside of the picture if the box of its control points is on the outer side of one of the planes through its
-/// sides, or behind the eye: so is their hull, and with it the surface.  A cell faces away if (Du x Dv) . (eye - p) < 0
-/// for all its points p.  That is estimated, as flatness is: from the polygons of the cells two steps on, whose normals
-/// are taken to spread, and whose corners to lie, twice as far.  A part of a sharp edge or boundary is outside as a
-/// cell is, by the box of the points that its curve depends on.  It is never taken for one that faces away.
+/// face is outside of the picture if its control points are on the outer side of one of the planes through its
+/// sides, or behind the eye: so is their hull, and with it the surface.  A cell of later levels is outside if a ball around it
+/// is, and faces away if (Du x Dv) . (eye - p) < 0 for all its points p.  Both are estimated: corners of the cells one or
+/// two steps on are taken to lie in the ball, and the normals of the polygons there to spread twice as far.  A part of a
+/// sharp edge or boundary is outside as a face is, by the points that its curve depends on.  Whole faces and sharp edges are
+/// never taken for what faces away.
 ///
 /// **Animation.**  Given the tree of the last frame, a cell that is refined there stays refined until the
 /// error is below a fraction of what is allowed, so that nothing flickers; and so do sharp edges and
@@ -71,7 +80,7 @@ public:
     /// A face of the base mesh.
     using Index = Far::Index;
 
-    /// \brief What is to be reached, and what is left out.
+    /// \brief How fine cells become, and which are left coarse.
     class Options {
     public:
         /// Flat to half a pixel, all faces, up to level 8.
@@ -83,21 +92,21 @@ public:
             _flatness = pixels;
             return *this;
         }
-        /// That number.
+        /// The number that was set.
         double GetFlatness() const { return _flatness; }
         /// Sets how many pixels long sides of cells may be; 0: any number.
         Options &SetEdgeLength(double pixels) {
             _edgeLength = pixels;
             return *this;
         }
-        /// That number.
+        /// The number that was set.
         double GetEdgeLength() const { return _edgeLength; }
         /// Sets the last level that is made, 0 ... CellTree::kLastLevel.
         Options &SetMaxLevel(int level) {
             _maxLevel = level;
             return *this;
         }
-        /// That level.
+        /// The level that was set.
         int GetMaxLevel() const { return _maxLevel; }
         /// Sets whether what is not seen is left coarse.
         Options &SetCulling(bool isCulling) {
@@ -112,7 +121,7 @@ public:
             _hysteresis = fraction;
             return *this;
         }
-        /// That fraction.
+        /// The fraction that was set.
         double GetHysteresis() const { return _hysteresis; }
 
     private:
@@ -123,15 +132,15 @@ public:
         double _hysteresis;
     };
 
-    /// \brief What a camera sees.
+    /// \brief The view of a camera.
     ///
-    /// The view is invalid if eye and target are one place, or nothing is up, also where the squares of
-    /// their distance or of what is up are beyond double precision; if a number is not finite, or an angle,
-    /// resolution or option is not in its range; and if both numbers of pixels are 0.  It then refines
-    /// nothing: trees have one cell, and polylines one segment.
+    /// The view is invalid, and refines nothing (trees have one cell, polylines one segment), if
+    ///  - eye and target are equal, or \c up is zero, also where squares are beyond double precision,
+    ///  - a number is not finite, or an angle, resolution or option is out of range,
+    ///  - both numbers of pixels are 0.
     ///
-    /// \param camera   where it is, and its picture
-    /// \param options  what is to be reached
+    /// \param camera   the camera
+    /// \param options  how fine cells become
     explicit View(Camera const &camera, Options options = Options());
 
     /// Whether the arguments were as they have to be.
@@ -179,7 +188,7 @@ public:
     int FindLevels(Surface<REAL> const &surface, REAL const controlPoints[],
                    typename Surface<REAL>::PointDescriptor const &pointDesc, int levels[]) const;
 
-    /// \brief What was found of the faces of a mesh.
+    /// \brief Counts of faces and cells of a mesh.
     struct Counts {
         std::vector<long> cellsByLevel; ///< those that are not refined
         long outside = 0;               ///< of these
@@ -199,7 +208,7 @@ public:
     CellForest MakeForest(SurfaceFactory const &factory, REAL const meshPoints[],
                           typename Surface<REAL>::PointDescriptor const &pointDesc,
                           CellForest const *previous = nullptr, Counts *counts = nullptr) const;
-    /// \brief The same with what views have found before, and for the next ones.
+    /// \brief Overload that uses, and keeps for the next view, how flat cells are.
     ///
     /// \param bounds  of the mesh
     template <typename REAL>
@@ -211,12 +220,9 @@ private:
     template <typename REAL>
     class FaceSurface;
 
-    template <typename REAL>
-    static void setBase(Surface<REAL> const &surface, REAL const *controlPoints,
-                        std::ptrdiff_t stride, internal::RefinedCells &cells);
-    CellTree makeTree(int faceSize, std::function<void(internal::RefinedCells &)> const &setBase,
-                      internal::FaceMeasures &measures, CellTree const *previous,
-                      std::vector<CellVisibility> *visibility) const;
+    void refine(CellTree &tree, std::function<internal::FaceToMeasure const &()> const &getBase,
+                internal::FaceMeasures &measures, CellTree const *previous,
+                std::vector<CellVisibility> *visibility) const;
     template <typename REAL>
     CellForest makeForest(SurfaceFactory const &factory, ViewBounds *bounds, REAL const *meshPoints,
                           std::ptrdiff_t stride, CellForest const *previous, Counts *counts) const;

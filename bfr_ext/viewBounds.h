@@ -17,15 +17,19 @@ class KeptPlans;
 struct MeshMeasures;
 } // namespace internal
 
-/// \brief What views find of the cells of a mesh that no camera changes, for the next views of it.
+/// \brief Keeps how flat the cells of a mesh are, which no camera changes, for the next views of the mesh.
 ///
-/// How flat cells are, how large and where, and where they face, takes most of the time of
-/// View::MakeForest().  It is kept by base face, together with the positions that it was found for: where
-/// the next view has other ones, what depends on them is found anew.  Forests are the same, to the last cell,
-/// as those that are made without.
+/// \code
+///     BfrExt::ViewBounds bounds(*factory);
+///     BfrExt::CellForest const forest = view.MakeForest(bounds, positions, 3); // each frame
+/// \endcode
+///
+/// Flatness, places and directions of cells take most of the time of View::MakeForest().  They are kept by base face with the
+/// positions that they were measured for; where positions have changed, they are measured again.  Forests are the same, to
+/// the last cell, with and without.
 ///
 /// **Memory** is what Options::SetMaxMemory() says, and three doubles for each vertex of the mesh.  Each
-/// cell that a view asked for takes about 80 bytes; for culling, 80 more.  What has no room is found anew by
+/// cell that a view asked for takes about 64 bytes; for culling, 72 more.  What has no room is found anew by
 /// each view.  Besides there are the tessellations of the last PatchStream of a forest, as far as that keeps
 /// them, for those of the next forest.
 ///
@@ -47,14 +51,14 @@ public:
             _maxMemory = bytes;
             return *this;
         }
-        /// That number.
+        /// The number that was set.
         std::size_t GetMaxMemory() const { return _maxMemory; }
 
     private:
         std::size_t _maxMemory;
     };
 
-    /// Of no cells yet.
+    /// Bounds of no cells yet.
     ///
     /// \param factory  of the mesh, which must live as long
     /// \param options  how much is kept

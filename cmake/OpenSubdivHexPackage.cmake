@@ -60,6 +60,18 @@ install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR}
 # Beside the headers that name it.
 install(FILES ${PROJECT_SOURCE_DIR}/far_ext/INDEXING.md
   DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/opensubdivhex/far_ext COMPONENT development)
+# The guide, with the pages, pictures and programs that it leads to, in the folders of the repository.
+install(FILES ${PROJECT_SOURCE_DIR}/README.md ${PROJECT_SOURCE_DIR}/CHANGELOG.md
+  DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT development)
+install(FILES ${PROJECT_SOURCE_DIR}/far_ext/INDEXING.md
+  DESTINATION ${CMAKE_INSTALL_DOCDIR}/far_ext COMPONENT development)
+install(FILES ${PROJECT_SOURCE_DIR}/regression/perf/RESULTS.md
+  ${PROJECT_SOURCE_DIR}/regression/perf/DEVICE_RESULTS.md
+  DESTINATION ${CMAKE_INSTALL_DOCDIR}/regression/perf COMPONENT development)
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/docs DESTINATION ${CMAKE_INSTALL_DOCDIR}
+  COMPONENT development PATTERN "site" EXCLUDE)
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/tutorials DESTINATION ${CMAKE_INSTALL_DOCDIR}
+  COMPONENT development PATTERN "CMakeLists.txt" EXCLUDE)
 
 if(UNIX AND NOT APPLE)
   include(OpenSubdivHexDebian)

@@ -9,14 +9,18 @@
 
 namespace OpenSubdivHex::FarExt {
 
-/// \brief The base faces of all faces of all levels, for those who ask for many:
-/// TopologyLevel::GetFaceBaseFace answers without a map, but takes a step for each level.
+/// \brief Maps the faces of all levels to their base faces.  For few faces TopologyLevel::GetFaceBaseFace answers without a
+/// map, in a step for each level.
 ///
-/// An F-face has the index of the face that it was made of, and its base faces.  So one map of the
-/// last level serves all levels: face f of any level that has it lies in the same base faces.
+/// \code
+///     FarExt::BaseFaceMap const map(*refiner);
+///     int const material = materials[map.GetBaseFace(face)];
+/// \endcode
 ///
-/// Takes 4 bytes for each face of the last level, and 12 for each that two base faces share.  Nothing
-/// refers to the refiner afterwards; the map is out of date when that refines again.
+/// One map of the last level serves all levels: an F-face has the index and the base faces of the face that made it.
+///
+/// Takes 4 bytes for each face of the last level, and 12 for each that two base faces share.  The map does not refer to the
+/// refiner, and is out of date when the refiner refines again.
 class OPENSUBDIVHEX_API BaseFaceMap {
 public:
     /// A face.
@@ -32,10 +36,10 @@ public:
     ///
     /// In parallel, with the same bits for any number of threads.  std::bad_alloc passes through.
     BaseFaceMap(TopologyRefiner const &refiner, int maxLevel);
-    /// Those of all levels.
+    /// The base faces of all levels.
     explicit BaseFaceMap(TopologyRefiner const &refiner)
         : BaseFaceMap(refiner, refiner.GetMaxLevel()) {}
-    /// Those up to \p level.
+    /// The base faces of levels up to \p level.
     explicit BaseFaceMap(TopologyLevel const &level);
 
     /// Faces of the last level that is mapped.

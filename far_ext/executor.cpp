@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "executor.h"
 
-#include "threads.h"
 #include "vtr/parallel.h"
-#include "vtr/threadPool.h"
 
 #include <algorithm>
 #include <atomic>
@@ -22,8 +20,6 @@ thread_local int chosenNumThreads = 0;           // 0: that of the executor
 
 Executor::~Executor() = default;
 
-Executor &GetDefaultExecutor() { return internal::GetThreadPool(); }
-
 void SetExecutor(Executor *executor) { executorOfAll = executor; }
 
 Executor &GetExecutor() {
@@ -36,8 +32,6 @@ void SetNumThreads(int numThreads) { chosenNumThreads = std::max(0, numThreads);
 int GetNumThreads() {
     return chosenNumThreads > 0 ? chosenNumThreads : std::max(1, GetExecutor().GetNumThreads());
 }
-
-int internal::GetChosenNumThreads() { return chosenNumThreads; }
 
 ExecutorScope::ExecutorScope(Executor *executor, int numThreads)
     : _executor(chosenExecutor), _numThreads(chosenNumThreads) {

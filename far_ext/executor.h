@@ -2,21 +2,41 @@
 #ifndef OPENSUBDIVHEX_FAR_EXT_EXECUTOR_H
 #define OPENSUBDIVHEX_FAR_EXT_EXECUTOR_H
 
-#include "threads.h"
+#include "export.h"
 
 #include <functional>
 
+#ifdef _OPENMP
+#include <omp.h>
+#endif
+
 namespace OpenSubdivHex::FarExt {
 
-/// \brief Runs loops on threads: what a host implements to have the calls of this library, of
-/// all its parts, work on threads of its own.
+/// \brief Sets how many threads each call of the calling thread uses at most, from now on.
 ///
-/// TbbExecutor and OmpExecutor are two.  Results do not depend on the executor, bit for bit.
+/// 0 or less: as many as the Executor says, which is the initial state.  The default executor says OpenMP's number
+/// (omp_set_num_threads() of the calling thread, or OMP_NUM_THREADS); in a build without OpenMP the number of processors.
+/// Results do not depend on the number.
 ///
-/// A call of the library makes a few loops, one after the other, each of them as
-/// ParallelFor(n, function) where n is the number of threads that are wanted.  function(i) then
-/// takes pieces of the work until none is left: who comes first does the most, and who comes late
-/// finds nothing to do and returns at once.  So a thread that is busy elsewhere holds nobody up.
+/// For one call, see ExecutorScope.
+OPENSUBDIVHEX_API void SetNumThreads(int numThreads);
+
+/// How many threads a call from the calling thread uses at most, 1 or more.
+OPENSUBDIVHEX_API int GetNumThreads();
+
+/// \brief Interface that a host implements to run the loops of this library on its own threads.
+///
+/// TbbExecutor and OmpExecutor implement it.  Results do not depend on the executor, bit for bit.
+///
+/// \code
+///     static FarExt::TbbExecutor executor;
+///     FarExt::SetExecutor(&executor);                     // for all calls
+///     FarExt::ExecutorScope const scope(&executor, 4);    // for the calls of this thread in this scope
+/// \endcode
+///
+/// A call of the library makes a few loops, one after the other: ParallelFor(n, function), where n is the number of threads
+/// wanted.  function(i) takes pieces of work until none is left.  The first thread to come does the most; a late one finds
+/// nothing and returns at once.  So a busy thread delays no other.
 class OPENSUBDIVHEX_API Executor {
 public:
     Executor() = default;
@@ -31,9 +51,8 @@ public:
 
     /// \brief Calls function(i) once for each 0 <= i < \p count, and returns when all calls have.
     ///
-    /// The order is free, and so are the threads, of which the calling one is best one: it need not
-    /// wait for any other then.  \p function throws nothing.  Several threads may call this at once,
-    /// and \p function may.
+    /// Order and threads are free.  Use the calling thread, too: it can then do all the work without waiting.  \p function
+    /// throws nothing.  Several threads may call this at once, \p function included.
     ///
     /// While it waits, the calling thread may do other work of the host, which may call this library.  Such a call may
     /// read whatever the waiting call reads: the same refiner, table, surface or stream.  As from any other thread, it
@@ -48,12 +67,11 @@ public:
     virtual void ParallelFor(int count, std::function<void(int)> const &function) = 0;
 };
 
-/// \brief The executor of whoever sets none: threads of this library, which all calls share.
+/// \brief The default executor: a pool of threads that all calls share.
 ///
-/// They are started when a call first wants more threads than there are, and sleep while there is
-/// nothing to do.  The calling thread works, too: it does all of the work where no other comes, and
-/// waits only for pieces that another has begun.  With many callers at once, who have the processors
-/// busy without help, each works alone.
+/// Calls run on the caller plus the pool, and never wait for idle workers: the calling thread waits only for pieces that
+/// another thread has begun.  Threads start when a call first wants more than there are, and sleep while idle.  With many
+/// callers at once, who keep the processors busy, each caller works alone.
 ///
 /// GetNumThreads() is the number that OpenMP says, omp_set_num_threads() of the calling thread or
 /// OMP_NUM_THREADS, where the library was built with OpenMP; else that of the processors.
@@ -68,11 +86,11 @@ OPENSUBDIVHEX_API Executor &GetDefaultExecutor();
 /// \param executor  must live until another was set and all calls that use it have returned
 OPENSUBDIVHEX_API void SetExecutor(Executor *executor);
 
-/// That of calls from the calling thread: of its innermost ExecutorScope, else of SetExecutor().
+/// The executor of calls from the calling thread: of its innermost ExecutorScope, else of SetExecutor().
 OPENSUBDIVHEX_API Executor &GetExecutor();
 
-/// \brief Sets executor and number of threads for the calls that the calling thread makes while it
-/// lives: for one call, or some.  Scopes of a thread end in the reverse order.
+/// \brief Sets executor and number of threads for the calls of the calling thread while the scope lives.  Scopes of a
+/// thread end in reverse order.
 class OPENSUBDIVHEX_API ExecutorScope {
 public:
     /// \param executor    null: as it is; else must live as long as the scope
@@ -91,13 +109,38 @@ private:
 /// \brief Calls function(i) once for each 0 <= i < \p count, as the library's own loops do: on
 /// GetExecutor(), by GetNumThreads() threads at most.
 ///
-/// What a call throws is thrown again when all have ended; others may then be left out.
+/// If a call throws, ParallelFor() throws the same when all running calls have ended; other calls may be left out.
 OPENSUBDIVHEX_API void ParallelFor(int count, std::function<void(int)> const &function);
 
-namespace internal {
-/// What SetNumThreads() or an ExecutorScope says for calls from the calling thread; 0: the executor.
-OPENSUBDIVHEX_API int GetChosenNumThreads();
-} // namespace internal
+#ifdef _OPENMP
+/// \brief Runs loops on OpenMP's threads: for hosts that bind these to processors (OMP_PROC_BIND).
+///
+/// Header only, and only in programs compiled with OpenMP.
+///
+/// \code
+///     FarExt::OmpExecutor executor;
+///     FarExt::ExecutorScope const scope(&executor);
+/// \endcode
+///
+/// OpenMP waits at the end of a loop for all threads of the team, idle ones included, and threads keep their processors
+/// while they wait unless OMP_WAIT_POLICY is passive.  Beside other busy threads a call can be many times slower than with
+/// the default executor, or than on one thread (benchmark busy).
+class OmpExecutor : public Executor {
+public:
+    int GetNumThreads() const override { return omp_get_max_threads(); }
+
+    void ParallelFor(int count, std::function<void(int)> const &function) override {
+        if (count < 1) {
+            return;
+        }
+        int const numThreads = FarExt::GetNumThreads();
+#pragma omp parallel for schedule(dynamic) num_threads(count < numThreads ? count : numThreads)
+        for (int i = 0; i < count; ++i) {
+            function(i);
+        }
+    }
+};
+#endif
 
 } // namespace OpenSubdivHex::FarExt
 

@@ -2,9 +2,31 @@
 #ifndef OPENSUBDIVHEX_FAR_EXT_HEX_SCHEME_OPTIONS_H
 #define OPENSUBDIVHEX_FAR_EXT_HEX_SCHEME_OPTIONS_H
 
-#include "mask.h"
+#include "export.h"
 
 namespace OpenSubdivHex::FarExt {
+
+/// \brief The circulant mask that makes a face's new points (F-vertices) from its vertices.
+///
+/// With theta_j = 2 pi j / n, the weight of the vertex j places around a face of n sides is
+///
+/// | mask    | w_0                      | w_j                                                   |
+/// |---------|--------------------------|-------------------------------------------------------|
+/// | Average | 1/2 + 1/(4n)             | 1/(4n), plus 1/8 for the two neighbours               |
+/// | Cosine  | (n + 5)/(4n)             | (3 + 2 cos theta_j)/(4n)                              |
+/// | Smooth  | 1/8 + 15/(8n), if n >= 5 | (7/8 + 3/4 cos theta_j + 1/4 cos 2 theta_j)/n, n >= 5 |
+///
+/// Average is (vertex + its two edge midpoints + centroid)/4, the paper's stage 1 (Ghaleb and
+/// Abd El-Latif 2005, section 3).  Cosine is Doo and Sabin's of 1978.  Smooth has eigenvalues
+/// 1, 1/2, 1/2, 1/4, 1/4, 1/8 ...; for n < 5 it is Cosine.
+///
+/// Smooth has masks of its own besides where hexagons meet what is not of the hexagonal lattice, and
+/// in quads of the first levels.
+enum class FaceMask {
+    Average, ///< the paper's: tangent planes, unbounded curvature
+    Cosine,  ///< Doo and Sabin's: bounded curvature at vertices with three faces
+    Smooth   ///< this project's: bounded curvature at nearly all vertices; for renderers
+};
 
 /// \brief The subdivision scheme: which new vertices there are, and how faces join them.
 ///
@@ -32,8 +54,7 @@ enum class SchemeType {
 /// - TriHex is one step of the scheme of that name, and refuses what that refuses.
 /// - Truncate cuts the corners off: a face of n sides becomes one of 2n, a vertex the polygon of the
 ///   points beside it on its edges.  Of triangles it makes hexagons.  It takes what the hexagonal
-///   scheme takes: boundaries, creases, corners and face-varying data.  ComputeTruncateMask has
-///   its masks, INDEXING.md its numbering.
+///   scheme takes: boundaries, creases, corners and face-varying data.  INDEXING.md has its numbering.
 enum class FirstStep {
     Same,    ///< level 1 is made as the levels behind it
     TriHex,  ///< a step of SchemeType::TriHex
@@ -49,7 +70,16 @@ enum class StepType {
     Truncate   ///< FirstStep::Truncate
 };
 
-/// \brief What distinguishes one refinement from another.
+/// \brief Chooses scheme, face mask and first step of a refinement.
+///
+/// The defaults are the paper's.  Renderers want FaceMask::Smooth and, for meshes of triangles,
+/// FirstStep::Truncate:
+///
+/// \code
+///     FarExt::TopologyRefinerFactory::Options options;
+///     options.hexSchemeOptions.faceMask = FarExt::FaceMask::Smooth;
+///     auto refiner = FarExt::TopologyRefinerFactory::Create(descriptor, sdcOptions, options);
+/// \endcode
 struct HexSchemeOptions {
     FaceMask faceMask = FaceMask::Average;         ///< of Hexagonal and DooSabin
     SchemeType schemeType = SchemeType::Hexagonal; ///< of all levels, but see firstStep

@@ -31,7 +31,7 @@ inline constexpr EFaceSide kEFaceSideA = {0, 3, 5, 4, 4, 5, 3};
 inline constexpr EFaceSide kEFaceSideB = {3, 0, 2, 1, 1, 2, 0};
 /// The one side of a boundary edge.
 inline constexpr EFaceSide kBoundaryEFaceSide = {0, 1, 3, 2, 2, 3, 1};
-/// What lies behind the start vertex of side a lies so many places further than in side b.
+/// Offset of the corners behind the start vertex in side a, against side b.
 inline constexpr Far::LocalIndex kEFaceSideShift = 3;
 static_assert(kEFaceSideA.startFVertex == kEFaceSideB.startFVertex + kEFaceSideShift &&
               kEFaceSideA.endFVertex == kEFaceSideB.endFVertex + kEFaceSideShift &&
@@ -64,6 +64,11 @@ constexpr int GetHalfOfEdge(int local) { return local < kDiagonalEnd ? 1 : 0; }
 constexpr bool HasHalves(int numCorners) { return numCorners == 6; }
 
 /// \brief The closed-form numbering of a child level in terms of its parent: see INDEXING.md.
+///
+/// \code
+///     FarExt::HexIndexing const indexing = parent.GetChildIndexing();
+///     int const vertex = indexing.GetCornerChildVertex(corner);
+/// \endcode
 ///
 /// A *corner* is a position in the parent's face-vertex array.  Nothing is stored but the parent's
 /// counts; every function is arithmetic on them, in which nothing is larger than the result.  Results are

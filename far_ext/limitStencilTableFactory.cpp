@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "limitStencilTableFactory.h"
+#include "stencilTableFactory.h"
 
 #include "far_ext/limit/latticeStencils.h"
 #include "far_ext/limit/limitMultiplier.h"
@@ -7,6 +7,7 @@
 #include "far_ext/stencil/levelStencils.h"
 #include "far_ext/vtr/hierarchy.h"
 #include "far_ext/vtr/parallel.h"
+#include "far_ext/vtr/report.h"
 
 #include <atomic>
 #include <limits>
@@ -118,7 +119,7 @@ private:
     std::vector<REAL> &dvWeights() { return const_cast<std::vector<REAL> &>(this->GetDvWeights()); }
 };
 
-// What most vertices of a level follow from, in terms of levels before.
+// Sources of most vertices of a level, in levels before.
 struct EarlierLimits {
     EarlierLimits(internal::MeshLevels const &mesh, int level) : lattice(mesh, level) {}
 
@@ -149,10 +150,10 @@ public:
     std::int64_t GetNumRows() const {
         return std::int64_t(_numSides) + (_faceMasks ? _level.numFaces : 0);
     }
-    // Of vertices.
+    // Rows of vertices.
     Index GetNumVertexRows() const { return _vertexRows ? _level.numVertices : 0; }
 
-    // What a row refers to.
+    // Memory that a row refers to.
     struct Scratch {
         Index sources[internal::PlainNeighborhoodGatherer::kNumRegular];
         LimitMask mask;
@@ -228,14 +229,14 @@ public:
 
     Index GetNum() const { return _numGroups; }
     RowGroup const &Get(Index group) const { return _groups[std::size_t(group)]; }
-    // Of a group without a face.
+    // The rows of a group without a face.
     Far::ConstIndexArray GetRows(Index group) const {
         Index const first = Get(group).first;
         return {_rows.data() + first, Get(group + 1).first - first};
     }
 
 private:
-    // Those that are F-vertices of one face go together.
+    // F-vertices of one face go together.
     void addVertices(internal::MeshLevels const &mesh, int level, std::vector<Index> const &verts) {
         constexpr int kMaxVertices = 8;
         // Vertices are numbered as those of the levels before, as far as all of these make V-vertices.
@@ -385,7 +386,7 @@ private:
         std::vector<RowBits> rows;
     };
 
-    // What a thread makes rows with.
+    // Scratch memory of a thread.
     struct State {
         Multiplier multiplier;
         PointRows::Scratch scratch;
@@ -554,6 +555,9 @@ template <typename REAL>
 auto LimitStencilTableFactoryReal<REAL>::Create(TopologyRefiner const &refiner, Options options,
                                                 CallStatus *status)
     -> std::unique_ptr<Table const> {
+    if (options.level == -1) {
+        options.level = refiner.GetMaxLevel();
+    }
     if (!internal::Report(checkLimitOptions(refiner, options), status)) {
         return nullptr;
     }

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "meshRefinerFactory.h"
+#include "topologyRefinerFactory.h"
 
 #include "far_ext/vtr/baseMesh.h"
 #include "far_ext/vtr/inputChecks.h"
+#include "far_ext/vtr/report.h"
 
 #include <algorithm>
 

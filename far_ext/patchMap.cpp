@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "patchMap.h"
+#include "patchTableFactory.h"
 
 #include "far_ext/patch/patchChecks.h"
 #include "far_ext/vtr/baseCoords.h"
 #include "far_ext/vtr/faceCoords.h"
+#include "far_ext/vtr/report.h"
 
 #include <algorithm>
 #include <cmath>
@@ -189,7 +190,7 @@ private:
         std::vector<double> uv(2 * std::size_t(size));
         internal::FindBaseCoords(_mesh, _surfaceLevel, level.GetDepth(), {cell.face, cell.half},
                                  internal::CoordsOf::Plane, uv.data());
-        // Of a hexagon in two faces there are the vertices of the half alone.
+        // A hexagon in two faces has only the vertices of the half.
         bool const isWhole =
             HasHalves(size) && level.GetFaceSurfaceFace(cell.face, 1 - cell.half) == patch.face;
         auto const getCorner = [&](int corner) {
@@ -219,7 +220,7 @@ private:
         }
     }
 
-    // Of a cell, whole or one half of a hexagon.
+    // A node of a cell, whole or one half of a hexagon.
     Node makeNode(int depth, Cell cell, bool isWhole) {
         Level const &level = _mesh.levels[std::size_t(depth)];
         int const size = level.GetFaceSize(cell.face);

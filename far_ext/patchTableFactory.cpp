@@ -4,7 +4,9 @@
 #include "far_ext/patch/farPatchTable.h"
 #include "far_ext/patch/patchChecks.h"
 #include "far_ext/patch/varyingPoints.h"
+#include "far_ext/stencil/interpolationMode.h"
 #include "far_ext/vtr/buffer.h"
+#include "far_ext/vtr/report.h"
 
 #include <algorithm>
 #include <iterator>

@@ -7,12 +7,19 @@
 #include <opensubdiv/far/patchTable.h>
 #include <opensubdiv/far/stencilTable.h>
 
+#include <array>
 #include <memory>
+#include <vector>
 
 namespace OpenSubdivHex::FarExt {
 
-/// \brief Makes a Far::PatchTable of the limit surface: what OpenSubdiv's evaluators, patch maps and
-/// tessellation shaders take, made by public functions of OpenSubdiv alone.
+/// \brief Makes a Far::PatchTable of the limit surface, for OpenSubdiv's evaluators, patch maps and tessellation shaders.
+///
+/// \code
+///     FarExt::PatchTableFactory::Options options(2); // the faces of level 2
+///     refiner->RefineUniform(options.GetRefineUniformOptions());
+///     auto table = FarExt::PatchTableFactory::Create(*refiner, options);
+/// \endcode
 ///
 /// All patches are bicubic Gregory patches of 20 points (GREGORY_BASIS), in one array: one for each half
 /// of a hexagon, one for each quad, and in other faces one for each corner, a *kite* with that corner,
@@ -20,15 +27,13 @@ namespace OpenSubdivHex::FarExt {
 /// half (as in kHexagonHalves) and corner; PatchMap says where they lie.  Holes have none.
 ///
 /// **Points.** The corners of patches lie on the limit surface.  Between them patches are close to it: the
-/// guide has numbers.  Patches that meet share the points of their common side, but where a side of a kite is
-/// half of its neighbour's, and have the same tangent planes along it; at sharp edges, and at the vertices
-/// there, each side has its own.
+/// guide has numbers.  Patches that meet share the points and tangent planes of their common side.  Exceptions: a side of a
+/// kite that is half of its neighbour's has points of its own; at sharp edges each side has its own tangent planes.
 ///
 /// The 20 points of every patch are local points, and the indices of patches count the control vertices
 /// first: point i of the local points has the index GetLevel(0).GetNumVertices() + i.  So a buffer has the control
-/// vertices and, behind them, what Far::PatchTable::GetLocalPointStencilTable() makes of these.  Where other
-/// vertices lie between, as with AppendLocalPointStencilTable(), evaluators are given a descriptor whose
-/// offset is larger by as many elements.
+/// vertices and, behind them, the results of Far::PatchTable::GetLocalPointStencilTable().  If other vertices lie
+/// between, as with AppendLocalPointStencilTable(), give evaluators a descriptor whose offset is larger by as many elements.
 ///
 /// **Face-varying channels** have a patch for each patch of the surface, with the same s and t: bilinear ones (QUADS)
 /// or Gregory patches of the channel's values.  These are the limit of the channel as those of the surface are of
@@ -104,8 +109,8 @@ public:
             fvarPatchPrecisionDouble = sizeof(REAL) == sizeof(double);
         }
 
-        /// \brief How the refiner is refined for these patches: by a level more than they are of, since
-        /// the surface in the middle of edges is a limit of that, with full topology.
+        /// \brief How to refine the refiner for these patches: one level further than the patches, with full topology,
+        /// because the surface in the middle of edges is a limit of that level.
         TopologyRefiner::UniformOptions GetRefineUniformOptions() const {
             TopologyRefiner::UniformOptions options(maxIsolationLevel + 1);
             options.fullTopologyInLastLevel = true;
@@ -150,6 +155,91 @@ public:
     AppendLocalPointStencilTable(Far::StencilTable const *base,
                                  Far::StencilTable const *localPoints,
                                  CallStatus *status = nullptr);
+};
+
+/// \brief Finds the patch of PatchTableFactory that has a point (face, u, v) of the mesh, and (s, t) in it, as
+/// Far::PatchMap does for ptex faces.
+///
+/// \code
+///     FarExt::PatchMap const map(*refiner, patchOptions);
+///     FarExt::PatchMap::Place const place = map.FindPlace(face, 0.5, 0.5);
+///     Osd::PatchCoord const coord(FarExt::PatchMap::GetHandle(place.patch), float(place.s), float(place.t));
+/// \endcode
+///
+/// Faces are those of the *surface level* (HexSchemeOptions::GetSurfaceLevel(): level 0, or 1 behind a first step); (u, v)
+/// are those of Bfr::Parameterization and TopologyLevel::GetFaceSurfaceCoords().  A patch is a quadrilateral in the plane
+/// of TopologyLevel::GetFaceBaseCoords(), in which (s, t) are bilinear.
+///
+/// The map does not refer to the refiner.  Several threads may use it at once.
+class OPENSUBDIVHEX_API PatchMap {
+public:
+    /// A face or a patch.
+    using Index = Far::Index;
+
+    /// (s, t) in a patch.
+    struct Place {
+        Index patch; ///< INDEX_INVALID: none
+        double s;    ///< from corner 0 to corner 1, from 0 to 1
+        double t;    ///< from corner 0 to corner 3
+    };
+
+    /// \brief The map of the patches that PatchTableFactory makes of \p refiner with \p options.
+    ///
+    /// \p status is set as by PatchTableFactory::Create(); on failure there are no patches.
+    PatchMap(TopologyRefiner const &refiner, PatchTableFactory::Options options,
+             CallStatus *status = nullptr);
+
+    /// Patches, as in the table.
+    int GetNumPatches() const { return int(_patches.size()); }
+    /// Faces of the surface level.
+    int GetNumFaces() const { return int(_roots.size()); }
+
+    /// The face of the surface level that a patch lies in.
+    Index GetFace(Index patch) const { return _patches[std::size_t(patch)].face; }
+    /// The face of level 0, as TopologyLevel::GetFaceBaseFace(): of its material, or of its texture.
+    Index GetBaseFace(Index patch) const { return _patches[std::size_t(patch)].baseFace; }
+    /// The four corners in the plane of the face: two coordinates of each.
+    std::array<double, 8> const &GetCoords(Index patch) const {
+        return _patches[std::size_t(patch)].coords;
+    }
+    /// (u, v) in the face, of (s, t) in a patch.
+    void GetFacePlace(Place const &place, double *u, double *v) const;
+
+    /// \brief The patch, and (s, t) in it, of (u, v) in a face of the surface level.
+    ///
+    /// A place between patches is found in one of them; one outside of the face, in the patch
+    /// nearest to it in its direction from the centre, with s or t outside of 0 to 1.
+    ///
+    /// \return  no patch where the face is a hole, or none of the mesh
+    Place FindPlace(Index face, double u, double v) const;
+
+    /// The handle that Osd::PatchCoord takes beside s and t.
+    static Far::PatchTable::PatchHandle GetHandle(Index patch) {
+        constexpr int kNumPoints = 20;
+        Far::PatchTable::PatchHandle handle;
+        handle.arrayIndex = 0;
+        handle.patchIndex = patch;
+        handle.vertIndex = kNumPoints * patch;
+        return handle;
+    }
+
+private:
+    struct Patch {
+        Index face;
+        Index baseFace;
+        std::array<double, 8> coords;
+    };
+    // A cell: its children, first that of its face, then those of its edges; or its patches.
+    struct Node {
+        Index firstChild;
+        Index firstPatch;
+    };
+    class TreeBuilder;
+
+    std::vector<int> _faceSizes;
+    std::vector<Node> _roots; // by face
+    std::vector<Node> _children;
+    std::vector<Patch> _patches;
 };
 
 } // namespace OpenSubdivHex::FarExt

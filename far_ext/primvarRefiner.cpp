@@ -3,21 +3,28 @@
 
 #include "baseFaceMap.h"
 #include "far_ext/limit/limitRows.h"
+#include "far_ext/stencil/interpolationMode.h"
 #include "far_ext/vtr/hierarchy.h"
 #include "far_ext/vtr/parallel.h"
 #include "far_ext/vtr/refinementRows.h"
+#include "far_ext/vtr/report.h"
 
 #include <algorithm>
 
-namespace OpenSubdivHex::FarExt::internal {
+namespace OpenSubdivHex::FarExt {
 
 using Far::Index;
+using internal::Cell;
+using internal::Hierarchy;
+using internal::Level;
+using internal::Refinement;
+using internal::RefinementRows;
 
 /// The edge of half 1 of a hexagon that is parallel to the diagonal.
 constexpr int kHalf1Edge = 1;
 
-/// Where PrimvarRows are read from: the F-vertices face by face, then the V-vertices.
-struct PrimvarRows::Reader {
+/// Where Rows are read from: the F-vertices face by face, then the V-vertices.
+struct PrimvarRefinerBase::Rows::Reader {
     /// A vertex of the level before, and a point of the level itself.
     struct Source {
         Index index;
@@ -37,7 +44,7 @@ struct PrimvarRows::Reader {
             rows->_weights.push_back(weight);
         }
 
-        PrimvarRows *rows;
+        Rows *rows;
         Index point;
     };
     struct SourceOfVertex {
@@ -48,7 +55,7 @@ struct PrimvarRows::Reader {
     struct Points {
         Point operator[](Index point) const { return {rows, point}; }
 
-        PrimvarRows *rows;
+        Rows *rows;
     };
 
     Reader(Hierarchy const &hierarchy, HexSchemeOptions schemeOptions, int level,
@@ -65,14 +72,17 @@ struct PrimvarRows::Reader {
     Index nextVVertex = 0;
 };
 
-PrimvarRows::PrimvarRows(TopologyRefiner const &refiner, int level, Interpolation interpolation,
-                         int channel)
+PrimvarRefinerBase::Rows::Rows(TopologyRefiner const &refiner, int level, Data data, int channel)
     : _reader(std::make_unique<Reader>(refiner.GetHierarchy(), refiner.GetHexSchemeOptions(), level,
-                                       interpolation, channel)) {}
+                                       data == Data::FaceVarying
+                                           ? internal::GetChannelInterpolation(refiner, channel)
+                                       : data == Data::Varying ? Interpolation::Varying
+                                                               : Interpolation::Vertex,
+                                       channel)) {}
 
-PrimvarRows::~PrimvarRows() = default;
+PrimvarRefinerBase::Rows::~Rows() = default;
 
-bool PrimvarRows::Next() {
+bool PrimvarRefinerBase::Rows::Next() {
     constexpr Index kNumComponents = 64;
     RefinementRows const &rows = _reader->refinementRows;
     Reader::Points points = {this};
@@ -81,21 +91,24 @@ bool PrimvarRows::Next() {
     _weights.clear();
     if (Index const begin = _reader->nextFace; begin < rows.GetNumFaces()) {
         _reader->nextFace = std::min(rows.GetNumFaces(), begin + kNumComponents);
-        InterpolateFaces<double>(rows, begin, _reader->nextFace, _reader->sources, points);
+        internal::InterpolateFaces<double>(rows, begin, _reader->nextFace, _reader->sources,
+                                           points);
     } else {
         Index const vVertex = _reader->nextVVertex;
         _reader->nextVVertex = std::min(rows.GetNumVVertices(), vVertex + kNumComponents);
-        InterpolateVVertices<double>(rows, vVertex, _reader->nextVVertex, _reader->sources, points);
+        internal::InterpolateVVertices<double>(rows, vVertex, _reader->nextVVertex,
+                                               _reader->sources, points);
     }
     return !_rows.empty();
 }
 
-std::vector<Index> FindUniformSources(TopologyRefiner const &refiner, int level) {
+std::vector<Index> PrimvarRefinerBase::findUniformSources(TopologyRefiner const &refiner,
+                                                          int level) {
     Refinement const &refinement = refiner.GetHierarchy().mesh.refinements[std::size_t(level) - 1];
     Level const &parent = *refinement.parent;
     BaseFaceMap const map(refiner, level - 1);
     std::vector<Index> sources(std::size_t(refinement.child->numFaces));
-    ParallelFor(refinement.child->numFaces, [&](Index cFace) {
+    internal::ParallelFor(refinement.child->numFaces, [&](Index cFace) {
         Cell const cell = refinement.GetParentCell({cFace, 0});
         Index source = cell.face;
         if (cFace >= refinement.child->numFFaces && cell.half == 1 && map.IsSplit(cell.face)) {
@@ -112,30 +125,31 @@ std::vector<Index> FindUniformSources(TopologyRefiner const &refiner, int level)
     return sources;
 }
 
-PrimvarLimitRows::PrimvarLimitRows(TopologyRefiner const &refiner) : _refiner(refiner) {}
+PrimvarRefinerBase::LimitRows::LimitRows(TopologyRefiner const &refiner) : _refiner(refiner) {}
 
-PrimvarLimitRows::~PrimvarLimitRows() = default;
+PrimvarRefinerBase::LimitRows::~LimitRows() = default;
 
-bool PrimvarLimitRows::Find(CallStatus *status) {
+bool PrimvarRefinerBase::LimitRows::Find(CallStatus *status) {
     Hierarchy const &hierarchy = _refiner.GetHierarchy();
     int const level = _refiner.GetMaxLevel();
-    if (!Report(CheckLimitLevel(hierarchy, _refiner.GetHexSchemeOptions(), level), status)) {
+    if (!internal::Report(
+            internal::CheckLimitLevel(hierarchy, _refiner.GetHexSchemeOptions(), level), status)) {
         return false;
     }
-    _rows =
-        std::make_unique<LimitRows>(hierarchy.mesh.levels[std::size_t(level)],
-                                    _refiner.GetSchemeOptions(), _refiner.GetHexSchemeOptions());
-    _sources.resize(PlainNeighborhoodGatherer::kNumRegular);
-    return Report(_rows->Find(), status);
+    _rows = std::make_unique<internal::LimitRows>(hierarchy.mesh.levels[std::size_t(level)],
+                                                  _refiner.GetSchemeOptions(),
+                                                  _refiner.GetHexSchemeOptions());
+    _sources.resize(internal::PlainNeighborhoodGatherer::kNumRegular);
+    return internal::Report(_rows->Find(), status);
 }
 
-Index PrimvarLimitRows::GetNumVertices() const {
+Index PrimvarRefinerBase::LimitRows::GetNumVertices() const {
     return _refiner.GetLevel(_refiner.GetMaxLevel()).GetNumVertices();
 }
 
-PrimvarLimitRows::Row PrimvarLimitRows::GetRow(Index vert) {
-    LimitRow const row = _rows->GetRow(vert, 0, _sources.data());
+PrimvarRefinerBase::LimitRows::Row PrimvarRefinerBase::LimitRows::GetRow(Index vert) {
+    internal::LimitRow const row = _rows->GetRow(vert, 0, _sources.data());
     return {row.size, row.sources, row.weights, row.du, row.dv};
 }
 
-} // namespace OpenSubdivHex::FarExt::internal
+} // namespace OpenSubdivHex::FarExt

@@ -11,80 +11,9 @@
 namespace OpenSubdivHex::FarExt {
 
 namespace internal {
-
-/// \brief The weights that make the points of a level, some points at a time.
-class OPENSUBDIVHEX_API PrimvarRows {
-public:
-    /// The sources of a point: first elements of the level before, then points of its own level,
-    /// which earlier rows made.
-    struct Row {
-        Far::Index point;
-        int numSources;
-        int numPoints;
-    };
-
-    /// \param channel  face-varying channel, whose values are the points; -1: vertices are
-    PrimvarRows(TopologyRefiner const &refiner, int level, Interpolation interpolation,
-                int channel);
-    ~PrimvarRows();
-
-    PrimvarRows(PrimvarRows const &) = delete;
-    PrimvarRows &operator=(PrimvarRows const &) = delete;
-
-    /// Goes on to the next rows; false when there are none.
-    bool Next();
-
-    std::vector<Row> const &GetRows() const { return _rows; }
-    /// Of all these rows in turn.
-    Far::Index const *GetSources() const { return _sources.data(); }
-    double const *GetWeights() const { return _weights.data(); }
-
-private:
-    struct Reader;
-
-    std::unique_ptr<Reader> _reader;
-    std::vector<Row> _rows;
-    std::vector<Far::Index> _sources;
-    std::vector<double> _weights;
-};
-
-/// By face of \p level, the face of level - 1 that it has face-uniform data of.
-OPENSUBDIVHEX_API std::vector<Far::Index> FindUniformSources(TopologyRefiner const &refiner,
-                                                             int level);
-
 class LimitRows;
 
-/// \brief The weights that make the limit of the vertices of a refiner's last level.
-class OPENSUBDIVHEX_API PrimvarLimitRows {
-public:
-    /// The weights of vertices for the limit of one, and for its derivatives.
-    struct Row {
-        int size;
-        Far::Index const *sources;
-        double const *weights;
-        double const *duWeights;
-        double const *dvWeights;
-    };
-
-    explicit PrimvarLimitRows(TopologyRefiner const &refiner);
-    ~PrimvarLimitRows();
-
-    PrimvarLimitRows(PrimvarLimitRows const &) = delete;
-    PrimvarLimitRows &operator=(PrimvarLimitRows const &) = delete;
-
-    /// Finds the weights; false, with a status, where there are none.
-    bool Find(CallStatus *status);
-    Far::Index GetNumVertices() const;
-    /// Valid until the next call.
-    Row GetRow(Far::Index vert);
-
-private:
-    TopologyRefiner const &_refiner;
-    std::unique_ptr<LimitRows> _rows;
-    std::vector<Far::Index> _sources;
-};
-
-/// What the elements of a user's array are counted in: its \c size_type, as of std::vector, else Index.
+/// The type that counts elements of a user's array: its \c size_type, as of std::vector, else Index.
 template <class ARRAY, class = void>
 struct ElementIndex {
     using Type = Far::Index;
@@ -99,6 +28,83 @@ decltype(auto) ElementOf(ARRAY &array, Far::Index i) {
 }
 
 } // namespace internal
+
+/// \cond  Not for users.
+/// \brief What PrimvarRefinerReal has for all types of weights: nothing for users.
+class OPENSUBDIVHEX_API PrimvarRefinerBase {
+protected:
+    /// What is interpolated.
+    enum class Data { Vertex, Varying, FaceVarying };
+
+    /// The weights that make the points of a level, some points at a time.
+    class OPENSUBDIVHEX_API Rows {
+    public:
+        /// The sources of a point: first elements of the level before, then points of its own level,
+        /// which earlier rows made.
+        struct Row {
+            Far::Index point;
+            int numSources;
+            int numPoints;
+        };
+
+        /// \param channel  face-varying channel, whose values are the points; -1: vertices are
+        Rows(TopologyRefiner const &refiner, int level, Data data, int channel);
+        ~Rows();
+
+        Rows(Rows const &) = delete;
+        Rows &operator=(Rows const &) = delete;
+
+        /// Goes on to the next rows; false when there are none.
+        bool Next();
+
+        std::vector<Row> const &GetRows() const { return _rows; }
+        /// The sources of all these rows, one after the other.
+        Far::Index const *GetSources() const { return _sources.data(); }
+        double const *GetWeights() const { return _weights.data(); }
+
+    private:
+        struct Reader;
+
+        std::unique_ptr<Reader> _reader;
+        std::vector<Row> _rows;
+        std::vector<Far::Index> _sources;
+        std::vector<double> _weights;
+    };
+
+    /// The weights that make the limit of the vertices of a refiner's last level.
+    class OPENSUBDIVHEX_API LimitRows {
+    public:
+        /// The weights of vertices for the limit of one, and for its derivatives.
+        struct Row {
+            int size;
+            Far::Index const *sources;
+            double const *weights;
+            double const *duWeights;
+            double const *dvWeights;
+        };
+
+        explicit LimitRows(TopologyRefiner const &refiner);
+        ~LimitRows();
+
+        LimitRows(LimitRows const &) = delete;
+        LimitRows &operator=(LimitRows const &) = delete;
+
+        /// Finds the weights; false, with a status, where there are none.
+        bool Find(CallStatus *status);
+        Far::Index GetNumVertices() const;
+        /// Valid until the next call.
+        Row GetRow(Far::Index vert);
+
+    private:
+        TopologyRefiner const &_refiner;
+        std::unique_ptr<internal::LimitRows> _rows;
+        std::vector<Far::Index> _sources;
+    };
+
+    /// By face of \p level, the face of level - 1 that it has face-uniform data of.
+    static std::vector<Far::Index> findUniformSources(TopologyRefiner const &refiner, int level);
+};
+/// \endcond
 
 /// \brief Computes primvar data of one level from that of the level before, without tables.
 ///
@@ -124,7 +130,7 @@ decltype(auto) ElementOf(ARRAY &array, Far::Index i) {
 ///     }
 /// \endcode
 template <typename REAL>
-class PrimvarRefinerReal {
+class PrimvarRefinerReal : public PrimvarRefinerBase {
 public:
     /// Keeps a reference to \p refiner.
     explicit PrimvarRefinerReal(TopologyRefiner const &refiner) : _refiner(refiner) {}
@@ -136,14 +142,14 @@ public:
     /// of the scheme.  1 <= level <= GetMaxLevel().
     template <class T, class U>
     void Interpolate(int level, T const &src, U &dst) const {
-        interpolate(level, Interpolation::Vertex, -1, src, dst);
+        interpolate(level, Data::Vertex, -1, src, dst);
     }
 
     /// \brief Varying data: linear, V' = V and P = (V + centroid)/2, for half faces the centroid of
     /// the whole hexagon; on a sharp boundary P = (3 V + W)/4.
     template <class T, class U>
     void InterpolateVarying(int level, T const &src, U &dst) const {
-        interpolate(level, Interpolation::Varying, -1, src, dst);
+        interpolate(level, Data::Varying, -1, src, dst);
     }
 
     /// \brief Face-uniform data: dst[f] is a copy of what the face of level - 1 has that half 0 of
@@ -157,7 +163,7 @@ public:
     /// GetFaceBaseFace(f, half) is the element with the index of the base face.
     template <class T, class U>
     void InterpolateFaceUniform(int level, T const &src, U &dst) const {
-        std::vector<Far::Index> const sources = internal::FindUniformSources(_refiner, level);
+        std::vector<Far::Index> const sources = findUniformSources(_refiner, level);
         for (std::size_t cFace = 0; cFace < sources.size(); ++cFace) {
             internal::ElementOf(dst, Far::Index(cFace)) = internal::ElementOf(src, sources[cFace]);
         }
@@ -167,7 +173,7 @@ public:
     /// those of level - 1, by the channel's FVarLinearInterpolation.
     template <class T, class U>
     void InterpolateFaceVarying(int level, T const &src, U &dst, int channel = 0) const {
-        interpolate(level, internal::GetChannelInterpolation(_refiner, channel), channel, src, dst);
+        interpolate(level, Data::FaceVarying, channel, src, dst);
     }
 
     /// \brief The limit of vertex data: dstPos[v] for all vertices of the last level from src, the
@@ -177,28 +183,28 @@ public:
     ///          the last level has no full topology, Unsupported where it has no limit stencils
     template <class T, class U>
     bool Limit(T const &src, U &dstPos, CallStatus *status = nullptr) const {
-        internal::PrimvarLimitRows rows(_refiner);
+        LimitRows rows(_refiner);
         if (!rows.Find(status)) {
             return false;
         }
         for (Far::Index vert = 0; vert < rows.GetNumVertices(); ++vert) {
-            internal::PrimvarLimitRows::Row const row = rows.GetRow(vert);
+            LimitRows::Row const row = rows.GetRow(vert);
             sum(src, row, row.weights, internal::ElementOf(dstPos, vert));
         }
         return true;
     }
 
-    /// \brief The same with first derivatives, those that LimitStencilTableFactory says, on side 0
+    /// \brief Overload with the first derivatives of LimitStencilTableFactory, on side 0
     /// of each vertex (see LimitSides).
     template <class T, class U, class U1, class U2>
     bool Limit(T const &src, U &dstPos, U1 &dstTan1, U2 &dstTan2,
                CallStatus *status = nullptr) const {
-        internal::PrimvarLimitRows rows(_refiner);
+        LimitRows rows(_refiner);
         if (!rows.Find(status)) {
             return false;
         }
         for (Far::Index vert = 0; vert < rows.GetNumVertices(); ++vert) {
-            internal::PrimvarLimitRows::Row const row = rows.GetRow(vert);
+            LimitRows::Row const row = rows.GetRow(vert);
             sum(src, row, row.weights, internal::ElementOf(dstPos, vert));
             sum(src, row, row.duWeights, internal::ElementOf(dstTan1, vert));
             sum(src, row, row.dvWeights, internal::ElementOf(dstTan2, vert));
@@ -208,7 +214,7 @@ public:
 
 private:
     template <class T, class ELEMENT>
-    static void sum(T const &src, internal::PrimvarLimitRows::Row const &row, double const *weights,
+    static void sum(T const &src, LimitRows::Row const &row, double const *weights,
                     ELEMENT &&element) {
         element.Clear();
         for (int i = 0; i < row.size; ++i) {
@@ -219,13 +225,12 @@ private:
     }
 
     template <class T, class U>
-    void interpolate(int level, Interpolation interpolation, int channel, T const &src,
-                     U &dst) const {
-        internal::PrimvarRows rows(_refiner, level, interpolation, channel);
+    void interpolate(int level, Data data, int channel, T const &src, U &dst) const {
+        Rows rows(_refiner, level, data, channel);
         while (rows.Next()) {
             Far::Index const *source = rows.GetSources();
             double const *weight = rows.GetWeights();
-            for (internal::PrimvarRows::Row const &row : rows.GetRows()) {
+            for (Rows::Row const &row : rows.GetRows()) {
                 auto &&point = internal::ElementOf(dst, row.point);
                 point.Clear();
                 for (int i = 0; i < row.numSources; ++i) {

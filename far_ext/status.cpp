@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "status.h"
 
+#include "far_ext/vtr/report.h"
+
 namespace OpenSubdivHex::FarExt {
 
 namespace {

@@ -20,7 +20,7 @@ namespace Sdc = OpenSubdiv::Sdc;
 
 namespace FarExt {
 
-/// \brief What kind of failure a CallStatus reports.
+/// \brief The kind of failure that a CallStatus reports.
 enum class StatusCode {
     Ok,              ///< nothing failed
     InvalidArgument, ///< an option or argument is outside its documented range
@@ -38,13 +38,13 @@ enum class ComponentType {
     Level        ///< a level of refinement
 };
 
-/// \brief What a Warning is about.
+/// \brief The kind of a Warning.
 enum class WarningCode {
     InconsistentOrientation, ///< edges that both of their faces run in the same direction
     NonManifoldEdges         ///< other edges that come apart, as those of three faces and more
 };
 
-/// \brief Something that was noticed without a failure: the result is what the message says.
+/// \brief A notice about the input that is no failure: the message says how the result treats it.
 struct Warning {
     WarningCode code;        ///< what it is about
     ComponentType component; ///< kind of the components concerned
@@ -53,20 +53,27 @@ struct Warning {
     std::string message;     ///< one sentence that names the count and the first
 };
 
-/// \brief The outcome of an operation: a code, the component that caused it and one sentence; and
-/// what was noticed on the way, of which a CallStatus that is Ok may have some, too.
+/// \brief The outcome of a call: a code, the component that caused a failure, one sentence, and warnings, which an Ok
+/// status may have, too.
 ///
-/// Every function that can fail takes an optional `CallStatus *` and assigns it on success as well as
-/// on failure.  Nothing in this library prints.
+/// Every function that can fail takes an optional `CallStatus *`, and assigns it on success, too.  Nothing in this
+/// library prints.
 ///
-/// **What throws.** std::bad_alloc alone, where memory is short: every function that makes or fills
-/// something lets it pass, and leaves nothing behind.  Objects that it worked on can be used again;
-/// TopologyRefiner says which levels it then has.  What the user's own types throw, as primvars do,
-/// passes through, too.
+/// \code
+///     FarExt::CallStatus status;
+///     auto refiner = FarExt::TopologyRefinerFactory::Create(descriptor, sdcOptions, &status);
+///     if (!refiner) {
+///         std::fprintf(stderr, "%s\n", status.GetErrorMessage().c_str());
+///     }
+/// \endcode
 ///
-/// **Threads.** Functions that make something, and const ones, may be called by several threads at
-/// once, for the same arguments, too; others by one thread while no other uses the object.  See
-/// SetNumThreads() for how many threads a call uses itself.
+/// **Exceptions.** Only std::bad_alloc is thrown.  A call that throws leaves nothing behind, and its objects can be used
+/// again; TopologyRefiner says which levels it then has.  Exceptions of the user's own types, such as primvars, pass
+/// through.
+///
+/// **Threads.** Const functions, and functions that make objects, may be called by several threads at once, for the same
+/// arguments, too.  Other functions are called by one thread while no other uses the object.  SetNumThreads() says how
+/// many threads a call uses itself.
 class CallStatus {
 public:
     /// Ok, no component, empty message.
@@ -79,7 +86,7 @@ public:
     /// Whether nothing failed.
     bool IsOk() const { return _code == StatusCode::Ok; }
 
-    /// What kind of failure it was.
+    /// The kind of failure.
     StatusCode GetCode() const { return _code; }
 
     /// Kind of the offending component, NoComponent when no single component is to blame.
@@ -91,9 +98,9 @@ public:
     /// One sentence that names the component and the cause; empty when Ok.
     std::string const &GetErrorMessage() const { return _message; }
 
-    /// What was noticed, one entry for each WarningCode at most.
+    /// The warnings: at most one for each WarningCode.
     std::vector<Warning> const &GetWarnings() const { return _warnings; }
-    /// Adds to what was noticed.
+    /// Adds a warning.
     void AddWarning(Warning warning) { _warnings.push_back(std::move(warning)); }
 
 private:
@@ -112,25 +119,6 @@ private:
 /// Far::SetErrorCallback is not.
 OPENSUBDIVHEX_API void SetErrorCallback(Far::ErrorCallbackFunc callback);
 
-namespace internal {
-
-/// Assigns \p result to \p status (when given) and sends a failure to the installed callback.
-/// Returns result.IsOk().
-OPENSUBDIVHEX_API bool Report(CallStatus const &result, CallStatus *status);
-
-/// A failure that no single component is to blame for.
-inline CallStatus Failure(StatusCode code, std::string message) {
-    return CallStatus(code, ComponentType::NoComponent, Far::INDEX_INVALID, std::move(message));
-}
-
-/// Whether \p value, which a cast may have made of any number, is one of an enumeration that goes
-/// from 0 to \p last.
-template <typename ENUM>
-bool IsInEnum(int value, ENUM last) {
-    return 0 <= value && value <= int(last);
-}
-
-} // namespace internal
 } // namespace FarExt
 } // namespace OpenSubdivHex
 

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "stencilTableFactory.h"
 
+#include "far_ext/stencil/interpolationMode.h"
 #include "far_ext/stencil/stencilMultiplier.h"
-#include "far_ext/stencil/stencilTableSize.h"
+#include "far_ext/vtr/report.h"
 
 #include <algorithm>
 #include <numeric>
@@ -131,7 +132,7 @@ std::unique_ptr<WritableTable<REAL>> buildTable(SymbolicTable &symbolic) {
     return table;
 }
 
-// The same of kept rows.
+// Overload for kept rows.
 template <typename REAL>
 std::unique_ptr<WritableTable<REAL>> buildTable(SymbolicTable const &symbolic,
                                                 KeptRows const &kept) {
@@ -305,18 +306,23 @@ std::vector<Index> StencilTableFactoryReal<REAL>::GetVerticesOfFaces(TopologyRef
 }
 
 template <typename REAL>
-StencilTableSize StencilTableFactoryReal<REAL>::EstimateSize(TopologyRefiner const &refiner,
-                                                             Options options, CallStatus *status) {
+StencilTableSize StencilTableFactoryReal<REAL>::GetSize(TopologyRefiner const &refiner,
+                                                        Options options, CallStatus *status) {
     CallStatus result = checkOptions(refiner, options);
     if (!result.IsOk()) {
         internal::Report(result, status);
         return {};
     }
     StencilPlan const plan = makePlan(refiner, options);
-    StencilTableSize size;
-    if (!internal::Report(internal::EstimateTableSize(plan, sizeof(REAL), size), status)) {
+    SymbolicTable symbolic(plan);
+    if (!internal::Report(symbolic.Form(), status)) {
         return {};
     }
+    StencilTableSize size;
+    size.numStencils = std::int64_t(symbolic.TakeSizes().size());
+    size.numWeights = symbolic.GetNumWeights();
+    size.numBytes = size.numStencils * std::int64_t(sizeof(int) + sizeof(Index)) +
+                    size.numWeights * std::int64_t(sizeof(Index) + sizeof(REAL));
     return size;
 }
 

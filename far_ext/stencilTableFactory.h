@@ -6,8 +6,10 @@
 
 #include <opensubdiv/far/stencilTable.h>
 
+#include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <memory>
 #include <vector>
 
 namespace OpenSubdivHex::FarExt {
@@ -21,32 +23,37 @@ struct StencilTableTypes {
 /// \brief In single precision.
 template <>
 struct StencilTableTypes<float> {
-    /// What the Osd evaluators take.
+    /// The type that Osd's evaluators take.
     using Table = Far::StencilTable;
 };
 
-/// \brief What the stencils interpolate, spelled as in Far::StencilTableFactory.
+/// \brief The kind of data that stencils interpolate, spelled as in Far::StencilTableFactory.
 enum StencilMode : int {
     INTERPOLATE_VERTEX,      ///< vertex data, with the masks of the scheme
     INTERPOLATE_VARYING,     ///< varying data, linearly
     INTERPOLATE_FACE_VARYING ///< the values of a face-varying channel
 };
 
-/// \brief What a stencil table holds and takes: see StencilTableFactoryReal::EstimateSize.
+/// \brief Stencils, weights and bytes of a stencil table: see StencilTableFactoryReal::GetSize.
 struct StencilTableSize {
-    std::int64_t numStencils = 0;  ///< exact
-    std::int64_t numWeights = 0;   ///< exact, or an estimate
-    std::int64_t numBytes = 0;     ///< of the table's arrays
-    std::int64_t numPeakBytes = 0; ///< of all that its making takes at once, the table included
+    std::int64_t numStencils = 0; ///< rows of the table
+    std::int64_t numWeights = 0;  ///< of all stencils
+    std::int64_t numBytes = 0;    ///< of the table's arrays
 };
 
 /// \brief Makes Far stencil tables of hexagonal refinements, for any Osd evaluator.
+///
+/// \code
+///     FarExt::StencilTableFactory::Options options;
+///     options.generateIntermediateLevels = false; // the last level only
+///     auto table = FarExt::StencilTableFactory::Create(*refiner, options);
+/// \endcode
 ///
 /// Several threads may call it at once, also for the same refiner.  std::bad_alloc passes through.
 template <typename REAL>
 class OPENSUBDIVHEX_API StencilTableFactoryReal {
 public:
-    /// What is made: Far::StencilTable, or Far::StencilTableReal<double>.
+    /// Far::StencilTable, or Far::StencilTableReal<double>.
     using Table = typename StencilTableTypes<REAL>::Table;
 
     /// \brief The fields of Far::StencilTableFactory::Options, with their meaning.
@@ -86,26 +93,20 @@ public:
     ///          names).
     static std::unique_ptr<Table const> Create(TopologyRefiner const &refiner, Options options,
                                                CallStatus *status = nullptr);
-    /// The same with the default options.
+    /// Overload with default options.
     static std::unique_ptr<Table const> Create(TopologyRefiner const &refiner,
                                                CallStatus *status = nullptr) {
         return Create(refiner, Options(), status);
     }
 
-    /// \brief Says how large a table will be before it is made, also one that is too large to make.
+    /// \brief Counts what a table will have, before memory is taken for it.
     ///
-    /// The number of stencils is exact.  Factorized, that of weights is exact for meshes of up to
-    /// 512 faces and up to level 4.  Else it is an estimate from 512 faces, spread over their
-    /// indices, and the growth up to level 4: within 10 % on the test shapes, worse where few faces
-    /// differ much from most.  Not factorized, it is an upper bound,
-    /// exact unless faces at one vertex share more than the edges there.
+    /// It is the first of the two passes of Create(), which finds the indices that faces share: about a
+    /// quarter of the time, in about a seventh of the table's memory.
     ///
-    /// Bytes follow from the weights; the peak is within 15 % of what was seen with glibc.  The
-    /// time does not depend on the number of stencils, but for tables that are not factorized.
-    ///
-    /// \return  zeros on failure: InvalidArgument as Create(), TooLarge when these faces alone are.
-    static StencilTableSize EstimateSize(TopologyRefiner const &refiner, Options options,
-                                         CallStatus *status = nullptr);
+    /// \return  zeros on failure, with the status of Create()
+    static StencilTableSize GetSize(TopologyRefiner const &refiner, Options options,
+                                    CallStatus *status = nullptr);
 
     /// @name Tables of a part of the mesh
     /// @{
@@ -113,7 +114,7 @@ public:
     /// \brief Makes the table of the refined faces, and halves of hexagons, that lie in some base
     /// faces: those whose TopologyLevel::GetFaceBaseFace() is one of \p baseFaces.
     ///
-    /// Of each level in the table it has the vertices of these, or their values, in ascending order:
+    /// For each level in the table it has the vertices of these faces, or their values, in ascending order:
     /// GetVerticesOfFaces() says which; the stencils are, bit for bit, those that Create() makes for
     /// them, and index the control vertices of the whole mesh.  A hexagon that lies half in the
     /// selection has the four vertices of that half (kHexagonHalves).  What selections that share no
@@ -146,16 +147,193 @@ using StencilTableFactory = StencilTableFactoryReal<float>;
 extern template class StencilTableFactoryReal<float>;
 extern template class StencilTableFactoryReal<double>;
 
-namespace internal {
+/// \brief The types of limit stencil table by the precision of the weights.
+template <typename REAL>
+struct LimitStencilTableTypes {
+    /// Far's table with weights of type REAL.
+    using Table = Far::LimitStencilTableReal<REAL>;
+};
+/// \brief In single precision.
+template <>
+struct LimitStencilTableTypes<float> {
+    /// The type that Osd's evaluators take.
+    using Table = Far::LimitStencilTable;
+};
 
-/// InvalidArgument for a mode that is none, and for face-varying data of a channel that the mesh has not.
-OPENSUBDIVHEX_API CallStatus CheckStencilMode(TopologyRefiner const &refiner, StencilMode mode,
-                                              int fvarChannel);
-/// By which masks data are interpolated, with a mode for which CheckStencilMode() is well.
-OPENSUBDIVHEX_API Interpolation GetModeInterpolation(TopologyRefiner const &refiner,
-                                                     StencilMode mode, int fvarChannel);
+/// \brief Numbers the sides of the vertices of a level, each of which has a normal: at a vertex where two or more
+/// infinitely sharp edges meet, the surface has a tangent plane for each part of its faces that they bound.
+///
+/// \code
+///     FarExt::LimitSides const sides(level);
+///     int const normal = sides.FindSide(level, face, corner); // of a table with generateFurtherSides
+/// \endcode
+///
+/// Where fewer meet, and at sharp boundaries without creases, a vertex has one side.  Sides are
+/// counted around the vertex, in the order of its faces and from the first sharp edge on.  Side 0
+/// has the index of its vertex; the further sides of all vertices, in their order, follow the
+/// vertices.
+class OPENSUBDIVHEX_API LimitSides {
+public:
+    /// A vertex, a face or a side.
+    using Index = Far::Index;
 
-} // namespace internal
+    /// \p level has full topology, else the sides are invalid; it is not referred to afterwards.
+    explicit LimitSides(TopologyLevel const &level);
+
+    /// Whether the level had full topology; else there are no sides, and no vertices.
+    bool IsValid() const { return _isValid; }
+    /// Vertices of the level.
+    int GetNumVertices() const { return _numVertices; }
+    /// Sides of all vertices, one for each at least.
+    int GetNumSides() const { return _numVertices + int(_furtherSides.size()); }
+
+    /// The vertex of a side.
+    Index GetVertex(Index side) const {
+        return side < _numVertices ? side : getFurtherSide(side).vert;
+    }
+    /// Which of the sides of its vertex a side is, from 0.
+    int GetLocalSide(Index side) const {
+        return side < _numVertices ? 0 : getFurtherSide(side).side;
+    }
+
+    /// \brief Whether these are valid and the sides of \p level, or of one that has the same.
+    ///
+    /// Finds those of \p level to compare them.
+    bool IsOf(TopologyLevel const &level) const;
+
+    /// \brief The side on which a face has its vertex number \p local.
+    ///
+    /// \param level  that of the constructor, or one for which IsOf() is true
+    /// \param half   of a hexagon with an infinitely sharp diagonal, the half that is meant, as in
+    ///               kHexagonHalves; ignored for other faces
+    Index FindSide(TopologyLevel const &level, Index face, int local, int half = 0) const;
+
+private:
+    struct FurtherSide {
+        bool operator==(FurtherSide const &other) const {
+            return vert == other.vert && side == other.side;
+        }
+
+        Index vert;
+        int side;
+    };
+    // The sides of the halves of a corner, of which a face without a diagonal has one.
+    struct Corner {
+        bool operator==(Corner const &other) const {
+            return corner == other.corner && sides[0] == other.sides[0] &&
+                   sides[1] == other.sides[1];
+        }
+
+        Index corner;
+        Index sides[2];
+    };
+
+    FurtherSide const &getFurtherSide(Index side) const {
+        return _furtherSides[std::size_t(side - _numVertices)];
+    }
+    void addCorner(std::size_t begin, Index corner, int half, Index side);
+
+    bool _isValid;
+    int _numVertices;
+    std::vector<FurtherSide> _furtherSides;
+    std::vector<Corner> _corners; // ascending; of the vertices with more than one side
+};
+
+/// \brief Makes limit stencil tables of hexagonal refinements: points of the limit surface and its
+/// first derivatives there, as weighted sums of control vertices, for any Osd evaluator.
+///
+/// \code
+///     FarExt::TopologyRefiner::UniformOptions refineOptions(2);
+///     refineOptions.fullTopologyInLastLevel = true;
+///     refiner->RefineUniform(refineOptions);
+///     FarExt::LimitStencilTableFactory::Options options;
+///     options.level = 2;
+///     auto table = FarExt::LimitStencilTableFactory::Create(*refiner, options);
+/// \endcode
+///
+/// The derivatives du and dv span the tangent plane, and du x dv points to the side from which the
+/// faces are counter-clockwise.  They are derivatives by coordinates u and v in which the edges of
+/// the level are about 1 long, exactly so where the faces around are laid out regularly; along a
+/// sharp boundary or crease du follows the curve.  From one point to the next these coordinates
+/// turn.  What else they are depends on the point:
+///
+/// | point             | limit                                                                   |
+/// |-------------------|-------------------------------------------------------------------------|
+/// | vertex            | that of its V-vertices; tangents from the subdominant eigenvectors      |
+/// | on a sharp curve  | a point of the curve; each side has its tangent plane (see LimitSides)  |
+/// | on a boundary with| the vertex itself, unmoved, and the mean plane of its faces: there every |
+/// | the paper's rule  | step adds a face and the border creeps on, without a local limit        |
+/// | sharp corner with | the vertex; du along the first sharp edge of the side, dv along the     |
+/// | sharp edges       | other, or into the side                                                 |
+/// | side all around,  | the tip of a cone, which has no tangent plane: du and dv span the plane |
+/// | whose vertex does | across its axis; with a sharp edge in the side du is along that, and dv |
+/// | not depend on it  | across                                                                  |
+/// | vertex, no faces  | the vertex; derivatives 0                                               |
+/// | face              | the centroid, where it has no sharp features                            |
+/// | half face,        | the middle of its long edge or of the diagonal, as its own parts shrink |
+/// | sharp diagonal    | towards there; tangents on the side of the half face, and of half 0     |
+///
+/// Where the surface has no tangent plane, or none that it comes close to in any level that can be
+/// made, dv goes to the middle of the faces of its side some levels on, instead of being an
+/// eigenvector.  That is on the wide side of a corner (two faces and more), where the surface is
+/// steeper towards its middle than along its edges, and with FaceMask::Average on the narrow side of
+/// a crease or sharp boundary (one face): there a bend of the curve fades by .3062 in a step, and
+/// what is across by .3273, so that normals of levels 6 and 7 differ by 30 degrees on bent meshes.
+/// Where a side ends at the edge with which it begins, or faces collapse, du and dv may be parallel.
+///
+/// The weights of a point are not negative.  Weights of derivatives are 8 at most, whatever the
+/// mesh.
+///
+/// Vertex interpolation alone; varying and face-varying data have no limit stencils.
+///
+/// Several threads may call it at once, also for the same refiner.  std::bad_alloc passes through.
+template <typename REAL>
+class OPENSUBDIVHEX_API LimitStencilTableFactoryReal {
+public:
+    /// Far::LimitStencilTable, or Far::LimitStencilTableReal<double>.
+    using Table = typename LimitStencilTableTypes<REAL>::Table;
+
+    /// \brief Which points, in this order: the vertices of the level, the further sides of
+    /// vertices, the centres of the level's faces.
+    struct Options {
+        /// \brief The level of the points, 0 ... refiner.GetMaxLevel(); -1: the last.  It must have full
+        /// topology.
+        ///
+        /// Level 0 gives the limits of the control vertices alone, however far the refiner is refined.
+        int level = -1;
+        bool generateVertices = true;       ///< the vertices, one point each
+        bool generateFurtherSides = false;  ///< only with vertices; as LimitSides numbers them
+        bool generateFaceCenters = false;   ///< the centres of faces
+        bool generate1stDerivatives = true; ///< else the table has no derivative weights
+
+        /// Else the stencils are of the vertices of the level, as in StencilTableFactory of those of
+        /// the level before: an evaluator applies them to the refined level.
+        bool factorizeIntermediateLevels = true;
+    };
+
+    /// \brief Makes the table.
+    ///
+    /// The indices of a stencil are control vertices, or vertices of the level, and ascend; offsets
+    /// are filled, and the arrays have their exact size.  The weights of a point sum to 1, those of a
+    /// derivative to 0.  Every point depends on the topology around it alone: any number of threads
+    /// makes the same bits.
+    ///
+    /// \return  null on failure: InvalidArgument (level out of range or without full topology, no
+    ///          points asked for, further sides without vertices), TooLarge (more than 2^31 - 1
+    ///          weights, here or in the stencils of the level) or Unsupported (the level is not
+    ///          refined by hexagonal steps; or, for points at vertices, a vertex or a face, which the
+    ///          status names: a vertex whose tangents iteration does not find, where a single sharp
+    ///          edge ends among more than 100 faces; one with more than 1,024 faces, or at a non-manifold
+    ///          corner as many in one fan; or a face with more than 1,024 vertices).
+    static std::unique_ptr<Table const> Create(TopologyRefiner const &refiner, Options options,
+                                               CallStatus *status = nullptr);
+};
+
+/// In single precision, for the Osd evaluators.
+using LimitStencilTableFactory = LimitStencilTableFactoryReal<float>;
+
+extern template class LimitStencilTableFactoryReal<float>;
+extern template class LimitStencilTableFactoryReal<double>;
 
 } // namespace OpenSubdivHex::FarExt
 

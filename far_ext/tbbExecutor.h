@@ -10,10 +10,10 @@
 
 namespace OpenSubdivHex::FarExt {
 
-/// \brief Runs loops on the threads of TBB, in the arena of the calling thread: for hosts that work
-/// with TBB themselves, as those of Embree, USD and Blender do.
+/// \brief Runs loops on TBB's threads, in the arena of the calling thread: for hosts that use TBB, as Embree, USD and
+/// Blender do.
 ///
-/// This header is all of it: the library does not use TBB, a program that includes this links it.
+/// Header only: the library does not use TBB; a program that includes this header links it.
 ///
 /// \code
 /// static FarExt::TbbExecutor executor;

@@ -3,6 +3,7 @@
 
 #include "far_ext/vtr/baseCoords.h"
 #include "far_ext/vtr/hierarchy.h"
+#include "far_ext/vtr/report.h"
 #include "far_ext/vtr/validator.h"
 
 #include <algorithm>

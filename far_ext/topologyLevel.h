@@ -16,7 +16,7 @@ struct Refinement;
 struct FVarLevel;
 } // namespace internal
 
-/// \brief What a face of a refined level was made from.
+/// \brief The component of the level before that made a face.
 enum class FaceKind {
     Base,  ///< a face of level 0
     Face,  ///< F-face: the smaller copy of a parent face, with as many sides
@@ -26,6 +26,13 @@ enum class FaceKind {
 
 /// \brief Read access to one level of a refined mesh, with the names and types of
 /// Far::TopologyLevel, so that templates written for Far's levels take it.
+///
+/// \code
+///     FarExt::TopologyLevel const &level = refiner->GetLevel(3);
+///     for (int face = 0; face < level.GetNumFaces(); ++face) {
+///         Far::ConstIndexArray const vertices = level.GetFaceVertices(face); // mostly six
+///     }
+/// \endcode
 ///
 /// Owned by a TopologyRefiner; references hold until the refiner refines again or is destroyed.
 /// INDEXING.md states the numbering and the order inside each relation.
@@ -45,7 +52,7 @@ public:
     /// An array of one index, or of none.
     class ChildFaceArray {
     public:
-        /// Of \p face, or of none if that is INDEX_INVALID.
+        /// Has \p face, or is empty if \p face is INDEX_INVALID.
         explicit ChildFaceArray(Index face) : _face(face) {}
 
         /// 1 or 0.
@@ -144,8 +151,8 @@ public:
     /// @name Topological properties, as in Far::TopologyLevel
     /// @{
 
-    /// Of level 0: whether the base edge had other than one face, or two that run it in opposite
-    /// directions.  Such an edge is taken apart into one boundary edge per face: INDEXING.md.
+    /// Whether the edge, of level 0, had neither one face nor two of the same orientation.  Such an edge comes apart into
+    /// one boundary edge for each face: INDEXING.md.
     bool IsEdgeNonManifold(Index e) const;
     /// Whether the faces of the vertex form more than one fan, or it lies on a non-manifold edge.
     bool IsVertexNonManifold(Index v) const;
@@ -210,9 +217,9 @@ public:
     ConstIndexArray GetFaceFVarValues(Index f, int channel, int half) const;
     /// Whether the values on both sides of the edge are the same.
     bool DoesEdgeFVarTopologyMatch(Index e, int channel = 0) const;
-    /// The same for the values around a vertex.
+    /// Whether all faces around a vertex have one value there.
     bool DoesVertexFVarTopologyMatch(Index v, int channel = 0) const;
-    /// The same for the values around all vertices of a face.
+    /// Whether each vertex of a face has one value in all faces around it.
     bool DoesFaceFVarTopologyMatch(Index f, int channel = 0) const;
     /// @}
 
@@ -241,7 +248,7 @@ public:
     /// Whether the halves of the face, a hexagon then, lie in two faces of level 0.
     bool IsFaceBaseSplit(Index f) const;
 
-    /// \brief The places of vertices of the face in a plane of its base face, in which pictures can be drawn.
+    /// \brief Coordinates of the face's vertices in a plane of its base face, for textures and pictures.
     ///
     /// The plane has edge 0 of the base face from (0, 0) to (1, 0), and the face to its left: a quad is the unit
     /// square, a triangle has its third vertex at (0, 1), and others are regular polygons.  V-vertices stay, and
@@ -268,13 +275,11 @@ public:
     /// \return      INDEX_INVALID before the surface level, and where not all steps behind it are
     ///              hexagonal
     Index GetFaceSurfaceFace(Index f, int half = 0) const;
-    /// \brief The places of the face's vertices in that face, by (u, v) of its parameterization: where its surface
-    /// has their limits.
+    /// \brief (u, v) of the face's vertices in that face: where its surface has their limits.
     ///
-    /// Those are the coordinates of Bfr::Parameterization.  In triangles and quads they are those of
-    /// GetFaceBaseCoords() in that face; others have a sub-face for each corner, the kite of the corner, the middles
-    /// of two edges and the centre, in which places are bilinear.  A place between two sub-faces is in the second of
-    /// them.
+    /// The coordinates are those of Bfr::Parameterization.  In triangles and quads they equal GetFaceBaseCoords() in that
+    /// face.  Other faces have a sub-face for each corner, the kite of the corner, the middles of two edges and the centre,
+    /// in which coordinates are bilinear.  A point between two sub-faces is in the second of them.
     ///
     /// \param half  of a face that lies in two, the half that is meant
     /// \param uv    gets u and v of each vertex, in the order of GetFaceBaseCoords()

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "topologyRefiner.h"
 
+#include "far_ext/stencil/interpolationMode.h"
 #include "far_ext/vtr/coplanarEdges.h"
 #include "far_ext/vtr/levelRefiner.h"
+#include "far_ext/vtr/report.h"
 
 #include <algorithm>
 #include <utility>

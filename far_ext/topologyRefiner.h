@@ -14,14 +14,19 @@
 
 namespace OpenSubdivHex::FarExt {
 
-/// \brief The topology of a mesh and of its hexagonal refinements, level by level.
+/// \brief The topology of a mesh and of its refined levels.
 ///
-/// Made by TopologyRefinerFactory, which copies what it needs: nothing refers to the base refiner
-/// or descriptor afterwards.  Indices, channels and levels are not checked, as in Far.
+/// \code
+///     auto refiner = FarExt::TopologyRefinerFactory::Create(descriptor, sdcOptions, options);
+///     refiner->RefineUniform(3);
+///     FarExt::TopologyLevel const &level = refiner->GetLevel(3);
+/// \endcode
 ///
-/// All queries are const and may be called by several threads at once, as may all that makes tables
-/// or evaluators of a refiner.  RefineUniform, RefineCoplanar and Unrefine are called by one thread
-/// while no other uses the refiner or its levels.
+/// TopologyRefinerFactory makes it and copies the base mesh: the refiner does not refer to the base refiner or descriptor.
+/// Indices, channels and levels are not checked, as in Far.
+///
+/// **Threads.** Several threads may call const functions, and make tables and evaluators of a refiner, at once.
+/// RefineUniform, RefineCoplanar and Unrefine are called by one thread while no other uses the refiner or its levels.
 class OPENSUBDIVHEX_API TopologyRefiner {
 public:
     /// Takes level 0.  Use TopologyRefinerFactory, which makes and validates it.
@@ -166,16 +171,6 @@ private:
     int _numRefinements = 0;
     std::vector<TopologyLevel> _levels;
 };
-
-namespace internal {
-
-/// InvalidArgument where a channel is none of the \p numChannels face-varying ones of a mesh.
-OPENSUBDIVHEX_API CallStatus CheckChannel(int channel, int numChannels);
-/// By which masks the values of a channel, which is in range, are interpolated.
-OPENSUBDIVHEX_API Interpolation GetChannelInterpolation(TopologyRefiner const &refiner,
-                                                        int channel);
-
-} // namespace internal
 
 } // namespace OpenSubdivHex::FarExt
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "compactStencilTable.h"
+#include "stencilEvaluator.h"
 
 #include "osd_ext/stencil/stencilKernel.h"
 
@@ -15,7 +15,7 @@ CompactStencilTable::~CompactStencilTable() = default;
 
 int CompactStencilTable::GetNumBlocks() const { return int(_blocks.size()); }
 
-internal::StencilRows CompactStencilTable::getRows() const {
+StencilEvaluatorBase::StencilRows CompactStencilTable::getRows() const {
     return {nullptr, nullptr, _indices.data(), _blocks.data()};
 }
 

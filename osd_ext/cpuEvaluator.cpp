@@ -6,8 +6,8 @@
 namespace OpenSubdivHex::OsdExt {
 
 bool CpuEvaluator::run(float const *src, Osd::BufferDescriptor const &srcDesc,
-                       internal::StencilOutput const *outputs, int numOutputs,
-                       internal::StencilRows const &rows, int start, int end) {
+                       StencilOutput const *outputs, int numOutputs, StencilRows const &rows,
+                       int start, int end) {
     internal::StencilTask task;
     if (!internal::MakeStencilTask(src, srcDesc, outputs, numOutputs, rows, start, end, &task)) {
         return false;
@@ -18,8 +18,8 @@ bool CpuEvaluator::run(float const *src, Osd::BufferDescriptor const &srcDesc,
     return true;
 }
 
-void CpuEvaluator::runPatches(internal::PatchTask const &task, int numPlaces) {
-    internal::EvaluatePatches(task, 0, numPlaces);
+void CpuEvaluator::runPatches(PatchTask const &task, int numPlaces) {
+    evaluatePatches(task, 0, numPlaces);
 }
 
 } // namespace OpenSubdivHex::OsdExt

@@ -9,6 +9,9 @@
 
 #include <memory>
 
+// The name of the type in CUDA's runtime.
+struct CUstream_st;
+
 namespace OpenSubdivHex {
 
 namespace Far = OpenSubdiv::Far;
@@ -16,15 +19,65 @@ namespace Osd = OpenSubdiv::Osd;
 
 namespace OsdExt {
 
-/// \brief Osd::CudaStencilTable for programs whose OpenSubdiv has none: a stencil table on the current
-/// device of CUDA.
+/// cudaStream_t, for headers that need no CUDA; null is the default stream.
+using CudaStream = CUstream_st *;
+
+/// \brief Floats on the current CUDA device: Osd::CudaVertexBuffer for an OpenSubdiv without CUDA.
+///
+/// \code
+///     std::unique_ptr<OsdExt::CudaVertexBuffer> const buffer(OsdExt::CudaVertexBuffer::Create(3, numVertices));
+///     buffer->UpdateData(positions, 0, numVertices);
+/// \endcode
+///
+/// A device context is a cudaStream_t, null for the default one.  Memory that is not there throws
+/// std::bad_alloc, any other error std::runtime_error with its name.
+class OPENSUBDIVHEX_API CudaVertexBuffer {
+public:
+    /// Gives a buffer of \p numVertices elements with \p numElements floats each, whose values are not
+    /// known.
+    static CudaVertexBuffer *Create(int numElements, int numVertices,
+                                    void *deviceContext = nullptr);
+    /// Frees the floats, when the device has done what it was asked for.
+    ~CudaVertexBuffer();
+
+    CudaVertexBuffer(CudaVertexBuffer const &) = delete;
+    CudaVertexBuffer &operator=(CudaVertexBuffer const &) = delete;
+
+    /// Copies \p numVertices elements of \p src to those from \p startVertex on, and waits for it.
+    void UpdateData(float const *src, int startVertex, int numVertices,
+                    void *deviceContext = nullptr);
+    /// Copies all elements to \p dst, and waits for it, and for what the context was asked before.
+    void GetData(float *dst, void *deviceContext = nullptr) const;
+
+    /// Floats of an element.
+    int GetNumElements() const { return _numElements; }
+    /// Elements.
+    int GetNumVertices() const { return _numVertices; }
+    /// The address on the device.
+    float *BindCudaBuffer() { return _floats; }
+
+private:
+    CudaVertexBuffer(int numElements, int numVertices, float *floats)
+        : _numElements(numElements), _numVertices(numVertices), _floats(floats) {}
+
+    int _numElements;
+    int _numVertices;
+    float *_floats;
+};
+
+/// \brief A stencil table on the current CUDA device: Osd::CudaStencilTable for an OpenSubdiv without CUDA.
+///
+/// \code
+///     std::unique_ptr<OsdExt::CudaStencilTable> const onDevice(OsdExt::CudaStencilTable::Create(table.get()));
+///     OsdExt::CudaEvaluator::EvalStencils(src, desc, dst, desc, onDevice.get());
+/// \endcode
 class OPENSUBDIVHEX_API CudaStencilTable {
 public:
     /// \brief Copies a table to the device, and waits for it.
     ///
     /// Memory that is not there throws std::bad_alloc, any other error std::runtime_error.
     static CudaStencilTable *Create(Far::StencilTable const *table, void *deviceContext = nullptr);
-    /// The same with the weights of first derivatives.
+    /// Overload with the weights of first derivatives.
     static CudaStencilTable *Create(Far::LimitStencilTable const *table,
                                     void *deviceContext = nullptr);
     /// Frees them, when the device has done what it was asked for.
@@ -44,9 +97,9 @@ public:
     void *GetIndicesBuffer() const;
     /// A weight for each index.
     void *GetWeightsBuffer() const;
-    /// The same of first derivatives; null without these.
+    /// A weight of the derivative by u for each index; null without derivatives.
     void *GetDuWeightsBuffer() const;
-    /// The same of the other first derivatives.
+    /// A weight of the derivative by v for each index; null without derivatives.
     void *GetDvWeightsBuffer() const;
     /// @}
 
@@ -61,9 +114,9 @@ private:
     std::unique_ptr<Arrays> _arrays;
 };
 
-/// \brief Osd::CudaEvaluator for programs whose OpenSubdiv has none: evaluates stencil tables on the
-/// current device of CUDA, with four threads for each stencil and elements of up to 4 floats in
-/// registers.
+/// \brief Evaluates stencil tables on the current CUDA device: Osd::CudaEvaluator for an OpenSubdiv without CUDA.
+///
+/// Four threads sum a stencil, with elements of up to 4 floats in registers.
 ///
 /// Element j of a buffer is the \c length floats from <tt>offset + j * stride</tt> on; stencil i is
 /// written to element i.  Source and destination may be one buffer, as long as no float is both read
@@ -99,7 +152,7 @@ public:
                             stencilTable->GetNumStencils(), deviceContext);
     }
 
-    /// The same with first derivatives.
+    /// Overload with first derivatives.
     template <class SRC_BUFFER, class DST_BUFFER, class STENCIL_TABLE>
     static bool
     EvalStencils(SRC_BUFFER *srcBuffer, Osd::BufferDescriptor const &srcDesc, DST_BUFFER *dstBuffer,
@@ -136,7 +189,7 @@ public:
                              int const *offsets, int const *indices, float const *weights,
                              int start, int end, void *deviceContext = nullptr);
 
-    /// The same with first derivatives.
+    /// Overload with first derivatives.
     static bool EvalStencils(float const *src, Osd::BufferDescriptor const &srcDesc, float *dst,
                              Osd::BufferDescriptor const &dstDesc, float *du,
                              Osd::BufferDescriptor const &duDesc, float *dv,

@@ -36,10 +36,15 @@ bool ForEachStencilRange(int numStencils, int maxStencils, FUNCTION function) {
 /// A context of OpenGL must be current in all of these functions.
 /// @{
 
-/// \brief Makes the table that an evaluator of OpenGL reads of a stencil table.
+/// \brief Copies a stencil table to OpenGL, for Osd's evaluators.
 ///
-/// Their constructors crash where nothing has loaded the functions of OpenGL before, as
-/// Osd::GLVertexBuffer and the evaluators do; this loads them.
+/// \code
+///     auto onDevice = OsdExt::CreateGLStencilTable<Osd::GLStencilTableSSBO>(*table);
+///     OsdExt::EvalStencilsInRanges(*evaluator, src, srcDesc, dst, dstDesc, *onDevice);
+/// \endcode
+///
+/// Osd's own constructors of these tables crash if the functions of OpenGL are not loaded yet, which Osd::GLVertexBuffer and
+/// the evaluators do; this function loads them.
 ///
 /// \tparam GL_TABLE   Osd::GLStencilTableSSBO for Osd::GLComputeEvaluator, Osd::GLStencilTableTBO for
 ///                    Osd::GLXFBEvaluator
@@ -77,7 +82,7 @@ bool EvalStencilsInRanges(Osd::GLComputeEvaluator const &instance, SRC_BUFFER *s
         });
 }
 
-/// The same with first derivatives, which tables of a Far::LimitStencilTable have.
+/// Overload with first derivatives, for tables of a Far::LimitStencilTable.
 template <class SRC_BUFFER, class DST_BUFFER>
 bool EvalStencilsInRanges(Osd::GLComputeEvaluator const &instance, SRC_BUFFER *srcBuffer,
                           Osd::BufferDescriptor const &srcDesc, DST_BUFFER *dstBuffer,

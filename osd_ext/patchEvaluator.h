@@ -2,26 +2,71 @@
 #ifndef OPENSUBDIVHEX_OSD_EXT_PATCH_EVALUATOR_H
 #define OPENSUBDIVHEX_OSD_EXT_PATCH_EVALUATOR_H
 
-#include "patchEvaluation.h"
+#include "far_ext/export.h"
 
-namespace OpenSubdivHex::OsdExt {
+#include <opensubdiv/osd/bufferDescriptor.h>
+#include <opensubdiv/osd/types.h>
 
-/// \brief The functions of CpuEvaluator, OmpEvaluator and TbbEvaluator that evaluate patches, with the
+namespace OpenSubdivHex {
+
+namespace Osd = OpenSubdiv::Osd;
+
+namespace OsdExt {
+
+namespace internal {
+struct PatchTypes;
+} // namespace internal
+
+/// \cond  Not for users.
+/// \brief What PatchEvaluator gives to its evaluators: nothing for users.
+class OPENSUBDIVHEX_API PatchEvaluatorBase {
+protected:
+    /// Where values at places of patches go, or one of their derivatives; null: nowhere.
+    struct PatchOutput {
+        float *dst;
+        Osd::BufferDescriptor desc;
+    };
+
+    /// Places of patches to be evaluated, as Osd's evaluators have them.
+    struct PatchTask {
+        float const *src;
+        Osd::BufferDescriptor srcDesc;
+        PatchOutput outputs[6]; ///< values; by s and t; by s twice, by s and t, by t twice
+        Osd::PatchCoord const *coords;
+        Osd::PatchArray const *arrays;
+        int const *indices;
+        Osd::PatchParam const *params;
+    };
+
+    /// Whether the descriptors are ones that can be evaluated, and all is there.
+    static bool checkPatchTask(PatchTask const &task, int numCoords);
+    /// Evaluates places [begin, end), with the same bits whatever the range.
+    static void evaluatePatches(PatchTask const &task, int begin, int end);
+
+private:
+    friend struct internal::PatchTypes;
+};
+/// \endcond
+
+/// \brief Functions of CpuEvaluator and ParallelEvaluator that evaluate patches, with the
 /// signatures of Osd::CpuEvaluator.
+///
+/// \code
+///     OsdExt::CpuEvaluator::EvalPatches(points, desc, dst, desc, numCoords, coords, cpuPatchTable);
+/// \endcode
 ///
 /// **Tables.** Osd::CpuPatchTable of any Far::PatchTable, of this library or of OpenSubdiv, or a class with
 /// its functions.  Patches of the types REGULAR, GREGORY_BASIS and QUADS, which those of Catmull-Clark and
 /// of PatchTableFactory are, are evaluated here; others, which those of Loop are, by Osd::CpuEvaluator.
 ///
-/// **Results** are those of Osd::CpuEvaluator but for rounding, its approximate derivatives of Gregory
-/// patches and its scale of derivatives by the depth of patches included.  A place of a side of two
-/// patches that have the same points there is the same, bit for bit, from both, where 1 - s, or 1 - t, is exact;
-/// not so with Osd::CpuEvaluator, where results differ by 1e-7 of their size.
+/// **Results** are those of Osd::CpuEvaluator except for rounding, with its approximate derivatives of Gregory patches and
+/// its scale of derivatives by the depth of patches.  Two patches with the same points on their common side have bitwise
+/// equal results there if 1 - s, or 1 - t, is exact.  Osd::CpuEvaluator's differ by 1e-7 of their size.
 ///
 /// **Elements** and **aliasing** are as in StencilEvaluator: elements that are read may not be written.
 /// Outputs may be null, and are then left out.
 ///
-/// **Order.** Places of one patch that follow one another take the least time.
+/// **Order.** Evaluation is fastest where points of one patch follow one another.
 ///
 /// **Threads.** As in StencilEvaluator: results are the same, bit for bit, for any evaluator and number of
 /// threads.
@@ -30,7 +75,7 @@ namespace OpenSubdivHex::OsdExt {
 /// stride is less than the length, an offset is negative, or, where there are places, what is to be read
 /// is null.  Indices in coordinates, arrays and patches are not checked.
 template <class EVALUATOR>
-class PatchEvaluator {
+class PatchEvaluator : public PatchEvaluatorBase {
     using Desc = Osd::BufferDescriptor;
 
 public:
@@ -40,7 +85,7 @@ public:
     /// \param instance,deviceContext   not used
     /// @{
 
-    /// Evaluates vertex data at places of patches.
+    /// Evaluates vertex data at (patch, s, t).
     template <class SRC, class DST, class COORDS, class TABLE>
     static bool EvalPatches(SRC *srcBuffer, Desc const &srcDesc, DST *dstBuffer,
                             Desc const &dstDesc, int numPatchCoords, COORDS *patchCoords,
@@ -49,7 +94,7 @@ public:
         return eval(srcBuffer, srcDesc, {bind(dstBuffer, dstDesc)}, numPatchCoords, patchCoords,
                     getVertexPatches(patchTable));
     }
-    /// The same with first derivatives.
+    /// Overload with first derivatives.
     template <class SRC, class DST, class COORDS, class TABLE>
     static bool EvalPatches(SRC *srcBuffer, Desc const &srcDesc, DST *dstBuffer,
                             Desc const &dstDesc, DST *duBuffer, Desc const &duDesc, DST *dvBuffer,
@@ -60,7 +105,7 @@ public:
                     {bind(dstBuffer, dstDesc), bind(duBuffer, duDesc), bind(dvBuffer, dvDesc)},
                     numPatchCoords, patchCoords, getVertexPatches(patchTable));
     }
-    /// The same with first and second derivatives.
+    /// Overload with first and second derivatives.
     template <class SRC, class DST, class COORDS, class TABLE>
     static bool EvalPatches(SRC *srcBuffer, Desc const &srcDesc, DST *dstBuffer,
                             Desc const &dstDesc, DST *duBuffer, Desc const &duDesc, DST *dvBuffer,
@@ -75,7 +120,7 @@ public:
                     numPatchCoords, patchCoords, getVertexPatches(patchTable));
     }
 
-    /// Evaluates varying data at places of patches.
+    /// Evaluates varying data at (patch, s, t).
     template <class SRC, class DST, class COORDS, class TABLE>
     static bool EvalPatchesVarying(SRC *srcBuffer, Desc const &srcDesc, DST *dstBuffer,
                                    Desc const &dstDesc, int numPatchCoords, COORDS *patchCoords,
@@ -84,7 +129,7 @@ public:
         return eval(srcBuffer, srcDesc, {bind(dstBuffer, dstDesc)}, numPatchCoords, patchCoords,
                     getVaryingPatches(patchTable));
     }
-    /// The same with first derivatives.
+    /// Overload with first derivatives.
     template <class SRC, class DST, class COORDS, class TABLE>
     static bool EvalPatchesVarying(SRC *srcBuffer, Desc const &srcDesc, DST *dstBuffer,
                                    Desc const &dstDesc, DST *duBuffer, Desc const &duDesc,
@@ -97,7 +142,7 @@ public:
                     numPatchCoords, patchCoords, getVaryingPatches(patchTable));
     }
 
-    /// Evaluates a face-varying channel at places of patches.
+    /// Evaluates a face-varying channel at (patch, s, t).
     template <class SRC, class DST, class COORDS, class TABLE>
     static bool EvalPatchesFaceVarying(SRC *srcBuffer, Desc const &srcDesc, DST *dstBuffer,
                                        Desc const &dstDesc, int numPatchCoords, COORDS *patchCoords,
@@ -107,7 +152,7 @@ public:
         return eval(srcBuffer, srcDesc, {bind(dstBuffer, dstDesc)}, numPatchCoords, patchCoords,
                     getFVarPatches(patchTable, fvarChannel));
     }
-    /// The same with first derivatives.
+    /// Overload with first derivatives.
     template <class SRC, class DST, class COORDS, class TABLE>
     static bool EvalPatchesFaceVarying(SRC *srcBuffer, Desc const &srcDesc, DST *dstBuffer,
                                        Desc const &dstDesc, DST *duBuffer, Desc const &duDesc,
@@ -123,7 +168,7 @@ public:
 
     /// @name With pointers
     /// \param src,dst,...       without the offset of their descriptors, which is added
-    /// \param patchCoords       the places; handles have arrays and patches
+    /// \param patchCoords       (s, t), and handles, which have arrays and patches
     /// \param patchArrays       by array
     /// \param patchIndexBuffer  of source elements, of all patches
     /// \param patchParamBuffer  by patch
@@ -132,7 +177,7 @@ public:
     // clang-tidy does not see that pointers in braces are copied.
     // NOLINTBEGIN(readability-non-const-parameter)
 
-    /// Evaluates data at places of patches.
+    /// Evaluates data at (patch, s, t).
     static bool EvalPatches(float const *src, Desc const &srcDesc, float *dst, Desc const &dstDesc,
                             int numPatchCoords, Osd::PatchCoord const *patchCoords,
                             Osd::PatchArray const *patchArrays, int const *patchIndexBuffer,
@@ -146,7 +191,7 @@ public:
                     patchParamBuffer},
                    numPatchCoords);
     }
-    /// The same with first derivatives.
+    /// Overload with first derivatives.
     static bool EvalPatches(float const *src, Desc const &srcDesc, float *dst, Desc const &dstDesc,
                             float *du, Desc const &duDesc, float *dv, Desc const &dvDesc,
                             int numPatchCoords, Osd::PatchCoord const *patchCoords,
@@ -161,7 +206,7 @@ public:
                     patchParamBuffer},
                    numPatchCoords);
     }
-    /// The same with first and second derivatives.
+    /// Overload with first and second derivatives.
     static bool EvalPatches(float const *src, Desc const &srcDesc, float *dst, Desc const &dstDesc,
                             float *du, Desc const &duDesc, float *dv, Desc const &dvDesc,
                             float *duu, Desc const &duuDesc, float *duv, Desc const &duvDesc,
@@ -186,14 +231,14 @@ public:
     /// @}
 
 private:
-    // What a table has of one kind of data.
+    // The arrays of a table for one kind of data.
     struct Patches {
         Osd::PatchArray const *arrays = nullptr;
         int const *indices = nullptr;
         Osd::PatchParam const *params = nullptr;
     };
     struct Outputs {
-        internal::PatchOutput values[6];
+        PatchOutput values[6];
     };
 
     template <class TABLE>
@@ -217,29 +262,29 @@ private:
     }
 
     template <class BUFFER>
-    static internal::PatchOutput bind(BUFFER *buffer, Desc const &desc) {
+    static PatchOutput bind(BUFFER *buffer, Desc const &desc) {
         return {buffer ? buffer->BindCpuBuffer() : nullptr, desc};
     }
 
     template <class SRC, class COORDS>
     static bool eval(SRC *srcBuffer, Desc const &srcDesc, Outputs const &outputs, int numCoords,
                      COORDS *coords, Patches const &patches) {
-        internal::PatchTask task = {
-            srcBuffer ? srcBuffer->BindCpuBuffer() : nullptr,
-            srcDesc,
-            {},
-            coords ? static_cast<Osd::PatchCoord const *>(coords->BindCpuBuffer()) : nullptr,
-            patches.arrays,
-            patches.indices,
-            patches.params};
+        PatchTask task = {srcBuffer ? srcBuffer->BindCpuBuffer() : nullptr,
+                          srcDesc,
+                          {},
+                          coords ? static_cast<Osd::PatchCoord const *>(coords->BindCpuBuffer())
+                                 : nullptr,
+                          patches.arrays,
+                          patches.indices,
+                          patches.params};
         for (int i = 0; i < 6; ++i) {
             task.outputs[i] = outputs.values[i];
         }
         return run(task, numCoords);
     }
 
-    static bool run(internal::PatchTask const &task, int numCoords) {
-        if (!internal::CheckPatchTask(task, numCoords)) {
+    static bool run(PatchTask const &task, int numCoords) {
+        if (!checkPatchTask(task, numCoords)) {
             return false;
         }
         if (numCoords > 0) {
@@ -249,6 +294,7 @@ private:
     }
 };
 
-} // namespace OpenSubdivHex::OsdExt
+} // namespace OsdExt
+} // namespace OpenSubdivHex
 
 #endif

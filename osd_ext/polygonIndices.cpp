@@ -4,9 +4,11 @@
 #include "drawing/vertexSeparator.h"
 
 #include "far_ext/baseFaceMap.h"
+#include "far_ext/stencil/interpolationMode.h"
 #include "far_ext/vtr/buffer.h"
 #include "far_ext/vtr/hierarchy.h"
 #include "far_ext/vtr/parallel.h"
+#include "far_ext/vtr/report.h"
 
 #include <limits>
 #include <numeric>
@@ -223,7 +225,7 @@ private:
         }
     }
 
-    // What corners have beside vertices.
+    // Attributes of corners besides vertices.
     void writeFurther(Index face, int half, int size, std::size_t corner) {
         for (int i = 0; i < size && _options.sides; ++i) {
             int const local = half < 0 ? i : FarExt::kHexagonHalves[half][i];
@@ -272,7 +274,7 @@ private:
     PolygonIndices _result;
 };
 
-// Those of the level, or sides.
+// Vertices of the level, or sides.
 Index getNumVertices(TopologyLevel const &level, DrawOptions const &options) {
     return options.splitVertices ? options.sides->GetNumSides() : level.GetNumVertices();
 }

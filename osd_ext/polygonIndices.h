@@ -2,7 +2,7 @@
 #ifndef OPENSUBDIVHEX_OSD_EXT_POLYGON_INDICES_H
 #define OPENSUBDIVHEX_OSD_EXT_POLYGON_INDICES_H
 
-#include "far_ext/limitStencilTableFactory.h"
+#include "far_ext/stencilTableFactory.h"
 
 #include <vector>
 
@@ -15,9 +15,17 @@ enum class CreaseCuts {
     All              ///< semi-sharp ones too, at the levels where they are sharp
 };
 
-/// \brief What is drawn of a level, and where hexagons are cut in two: from vertex 0 to vertex 3, into
-/// the halves of FarExt::kHexagonHalves.  Only an edge of level 0 ever crosses a face, so that a
-/// hexagon is cut only where it has two base faces, or is half a hole; no cut adds vertices.
+/// \brief Options of CreatePolygonIndices and CreateTriangleIndices: which faces are drawn, and where hexagons are cut.
+///
+/// A cut goes from vertex 0 to vertex 3, into the halves of FarExt::kHexagonHalves, and adds no vertex.  Only hexagons on
+/// an edge of level 0 are ever cut.
+///
+/// \code
+///     OsdExt::DrawOptions options;
+///     options.fvarChannels = {0};      // texture coordinates
+///     options.separateVertices = true; // one index for each corner
+///     auto triangles = OsdExt::CreateTriangleIndices(refiner->GetLevel(3), options);
+/// \endcode
 struct DrawOptions {
     /// Added to every vertex, for levels behind others in one buffer.  Not negative.
     int vertexOffset = 0;
@@ -52,12 +60,11 @@ struct DrawOptions {
     bool drawHoles = false;
 };
 
-/// \brief The vertices that corners share where all that these have is to be the same: a vertex at a seam
-/// or a crease is several, and with places one on an edge of the base mesh.
+/// \brief Vertices for buffers with one index per corner: a vertex at a seam or a crease is several, and with coordinates
+/// also one on an edge of the base mesh.
 ///
-/// The first are the vertices that corners have without DrawOptions::separateVertices, in their order:
-/// what was evaluated for these stays where it is.  Each has what its first corner has.  Behind them
-/// are those that other corners need, in the order in which corners come to them.
+/// The vertices of the level (or sides) come first, in their order, so that evaluated values stay in place; each has the
+/// attributes of its first corner.  Behind them are the vertices that other corners need, in the order of corners.
 struct DrawnVertices {
     /// How many there are.
     int GetNumVertices() const { return int(vertices.size()); }
@@ -103,7 +110,7 @@ struct DrawnFaces {
     std::vector<int> labels;
     /// @}
 
-    /// What the vertices are.  Empty without DrawOptions::separateVertices.
+    /// The separate vertices.  Empty without DrawOptions::separateVertices.
     DrawnVertices drawnVertices;
 };
 
@@ -129,6 +136,31 @@ struct PolygonIndices : DrawnFaces {
 OPENSUBDIVHEX_API PolygonIndices CreatePolygonIndices(FarExt::TopologyLevel const &level,
                                                       DrawOptions const &options = DrawOptions(),
                                                       FarExt::CallStatus *status = nullptr);
+
+/// \brief Index buffers of the triangles that draw a level: three corners each.
+///
+/// \code
+///     OsdExt::TriangleIndices const triangles = OsdExt::CreateTriangleIndices(refiner->GetLevel(3));
+///     Draw(triangles.vertices.data(), triangles.GetNumTriangles());
+/// \endcode
+struct TriangleIndices : DrawnFaces {
+    /// How many there are.
+    int GetNumTriangles() const { return int(faces.size()); }
+};
+
+/// \brief Triangulates polygons, in their order and orientation.  A polygon of n sides makes n - 2 triangles that zigzag
+/// across it, so that no vertex has them all; one of less than three sides makes none.
+///
+/// Works in parallel, with the same result for any number of threads; several threads may call it at
+/// once.  std::bad_alloc passes through.
+OPENSUBDIVHEX_API TriangleIndices CreateTriangleIndices(PolygonIndices const &polygons);
+
+/// \brief The triangles of CreatePolygonIndices(level, options, status).
+///
+/// Hexagons make four triangles, cut or not.
+OPENSUBDIVHEX_API TriangleIndices CreateTriangleIndices(FarExt::TopologyLevel const &level,
+                                                        DrawOptions const &options = DrawOptions(),
+                                                        FarExt::CallStatus *status = nullptr);
 
 } // namespace OpenSubdivHex::OsdExt
 

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "refinementEvaluator.h"
 
+#include "far_ext/stencil/interpolationMode.h"
 #include "far_ext/vtr/hierarchy.h"
 #include "far_ext/vtr/parallel.h"
+#include "far_ext/vtr/report.h"
 #include "osd_ext/refinement/evaluationChecks.h"
 #include "osd_ext/refinement/preparedLimit.h"
 #include "osd_ext/refinement/refinementKernel.h"
@@ -27,6 +29,11 @@ namespace {
 
 CallStatus invalidArgument(std::string const &message) {
     return FarExt::internal::Failure(StatusCode::InvalidArgument, message);
+}
+
+template <class FLOAT>
+internal::Elements<FLOAT> getElements(internal::BufferView<FLOAT *> const &view) {
+    return {view.buffer + view.desc.offset, view.desc.stride};
 }
 
 void copyElements(internal::Elements<float const> src, int length, Index count,
@@ -80,7 +87,7 @@ float findScale(internal::Elements<float const> src, int length, Index count) {
     return isLarge ? kScaleOfLarge : 1.0f;
 }
 
-// Of elements behind one another.
+// For consecutive elements.
 void undoScale(float scale, internal::Elements<float> dst, int length, std::int64_t count) {
     if (scale != 1) {
         for (std::int64_t i = 0; i < count; ++i) {
@@ -100,8 +107,8 @@ public:
 
     Impl(TopologyRefiner const &refiner, Options options);
 
-    CallStatus Check(float const *src, Osd::BufferDescriptor const &srcDesc, float const *dst,
-                     Osd::BufferDescriptor const &dstDesc, int level,
+    CallStatus Check(RefinementEvaluator::Source const &src,
+                     RefinementEvaluator::Destination const &dst, int level,
                      std::int64_t numWritten) const;
     void Evaluate(Source values, Destination result, int length, int level);
     void EvaluateAllLevels(Source values, Destination result, int length);
@@ -165,19 +172,20 @@ RefinementEvaluator::Impl::Impl(TopologyRefiner const &topologyRefiner, Options 
     }
 }
 
-CallStatus RefinementEvaluator::Impl::Check(float const *src, Osd::BufferDescriptor const &srcDesc,
-                                            float const *dst, Osd::BufferDescriptor const &dstDesc,
-                                            int level, std::int64_t numWritten) const {
+CallStatus RefinementEvaluator::Impl::Check(RefinementEvaluator::Source const &src,
+                                            RefinementEvaluator::Destination const &dst, int level,
+                                            std::int64_t numWritten) const {
     if (refiner.GetNumRefinements() != _numRefinements) {
         return invalidArgument("the refiner has refined again since the evaluator was made");
     }
     if (CallStatus status = internal::CheckLevel(level, GetMaxLevel()); !status.IsOk()) {
         return status;
     }
-    if (numWritten > 0 && (!src || !dst)) {
-        return invalidArgument(std::string("the ") + (src ? "destination" : "source") + " is null");
+    if (numWritten > 0 && (!src.buffer || !dst.buffer)) {
+        return invalidArgument(std::string("the ") + (src.buffer ? "destination" : "source") +
+                               " is null");
     }
-    return internal::CheckDescriptors(srcDesc, dstDesc);
+    return internal::CheckDescriptors(src.desc, dst.desc);
 }
 
 // The control values by vertex of the mesh of level 0, multiplied by scale.
@@ -318,60 +326,37 @@ std::int64_t RefinementEvaluator::GetNumElementsAllLevels() const {
                            std::int64_t(0));
 }
 
-bool RefinementEvaluator::Evaluate(float const *src, Osd::BufferDescriptor const &srcDesc,
-                                   float *dst, Osd::BufferDescriptor const &dstDesc, int level,
+bool RefinementEvaluator::evaluate(Source const &src, Destination const &dst, int level,
                                    CallStatus *status) {
     bool const isLevel = level >= 0 && level <= GetMaxLevel();
     std::int64_t const numWritten = isLevel ? GetNumElements(level) : 0;
-    CallStatus const result = _impl->Check(src, srcDesc, dst, dstDesc, level, numWritten);
-    if (!FarExt::internal::Report(result, status)) {
+    if (!FarExt::internal::Report(_impl->Check(src, dst, level, numWritten), status)) {
         return false;
     }
-    _impl->Evaluate({src + srcDesc.offset, srcDesc.stride}, {dst + dstDesc.offset, dstDesc.stride},
-                    srcDesc.length, level);
+    _impl->Evaluate(getElements(src), getElements(dst), src.desc.length, level);
     return true;
 }
 
-bool RefinementEvaluator::EvaluateAllLevels(float const *src, Osd::BufferDescriptor const &srcDesc,
-                                            float *dst, Osd::BufferDescriptor const &dstDesc,
+bool RefinementEvaluator::evaluateAllLevels(Source const &src, Destination const &dst,
                                             CallStatus *status) {
-    CallStatus const result =
-        _impl->Check(src, srcDesc, dst, dstDesc, GetMaxLevel(), GetNumElementsAllLevels());
+    CallStatus const result = _impl->Check(src, dst, GetMaxLevel(), GetNumElementsAllLevels());
     if (!FarExt::internal::Report(result, status)) {
         return false;
     }
     if (GetMaxLevel() > 0) {
-        _impl->EvaluateAllLevels({src + srcDesc.offset, srcDesc.stride},
-                                 {dst + dstDesc.offset, dstDesc.stride}, srcDesc.length);
+        _impl->EvaluateAllLevels(getElements(src), getElements(dst), src.desc.length);
     }
     return true;
 }
 
-bool RefinementEvaluator::EvaluateLimit(float const *src, Osd::BufferDescriptor const &srcDesc,
-                                        float *dst, Osd::BufferDescriptor const &dstDesc, int level,
-                                        CallStatus *status) {
-    return evaluateLimit(src, srcDesc, {Output(dst, dstDesc)}, level, status);
-}
-
-bool RefinementEvaluator::EvaluateLimit(float const *src, Osd::BufferDescriptor const &srcDesc,
-                                        float *dst, Osd::BufferDescriptor const &dstDesc, float *du,
-                                        Osd::BufferDescriptor const &duDesc, float *dv,
-                                        Osd::BufferDescriptor const &dvDesc, int level,
-                                        CallStatus *status) {
-    return evaluateLimit(src, srcDesc,
-                         {Output(dst, dstDesc), Output(du, duDesc), Output(dv, dvDesc)}, level,
-                         status);
-}
-
-bool RefinementEvaluator::evaluateLimit(float const *src, Osd::BufferDescriptor const &srcDesc,
-                                        std::vector<Output> const &outputs, int level,
-                                        CallStatus *status) {
+bool RefinementEvaluator::evaluateLimit(Source const &src, std::vector<Destination> const &outputs,
+                                        int level, CallStatus *status) {
     bool const isLevel = level >= 0 && level <= GetMaxLevel();
     std::int64_t const numWritten = isLevel ? GetNumElements(level) : 0;
     CallStatus result;
-    for (Output const &output : outputs) {
+    for (Destination const &output : outputs) {
         if (result.IsOk()) {
-            result = _impl->Check(src, srcDesc, output.dst, output.desc, level, numWritten);
+            result = _impl->Check(src, output, level, numWritten);
         }
     }
     if (result.IsOk()) {
@@ -382,11 +367,8 @@ bool RefinementEvaluator::evaluateLimit(float const *src, Osd::BufferDescriptor 
     }
     if (numWritten > 0) {
         std::vector<internal::Elements<float>> elements(outputs.size());
-        std::transform(outputs.begin(), outputs.end(), elements.begin(), [](Output const &output) {
-            return internal::Elements<float>{output.dst + output.desc.offset, output.desc.stride};
-        });
-        _impl->EvaluateLimit({src + srcDesc.offset, srcDesc.stride}, elements, srcDesc.length,
-                             level);
+        std::transform(outputs.begin(), outputs.end(), elements.begin(), getElements<float>);
+        _impl->EvaluateLimit(getElements(src), elements, src.desc.length, level);
     }
     return true;
 }

@@ -8,10 +8,13 @@
 
 namespace OpenSubdivHex::OsdExt {
 
-/// \brief The instructions that CpuEvaluator, OmpEvaluator and TbbEvaluator use, each level above the
-/// one before it.
+/// \brief The instructions that CpuEvaluator and ParallelEvaluator use, in ascending order.
 ///
-/// Avx2 and Avx512 are there when the library was built by GCC or Clang for x86-64.
+/// \code
+///     OsdExt::SetSimdLevel(OsdExt::SimdLevel::Portable); // to compare
+/// \endcode
+///
+/// Avx2 and Avx512 exist in builds by GCC or Clang for x86-64.
 ///
 /// Results are the same, bit for bit, for any number of threads, ranges and buffers, at one level.
 /// Levels differ in the last bits: above Portable, products are fused with sums (FMA), and the
@@ -31,10 +34,9 @@ OPENSUBDIVHEX_API SimdLevel GetMaxSimdLevel() noexcept;
 
 /// \brief The level in use.
 ///
-/// Until SetSimdLevel() was called it is the one that the environment variable OPENSUBDIVHEX_SIMD
-/// names when the level is first needed, else GetMaxSimdLevel().  A name that FindSimdLevel() does
-/// not know, or that of a level above GetMaxSimdLevel(), counts as none: a program that wants to
-/// tell its user of it compares the name of this level with the variable.
+/// Until SetSimdLevel() is called, the environment variable OPENSUBDIVHEX_SIMD names the level when it is first needed, else
+/// the level is GetMaxSimdLevel().  An unknown name, or one above GetMaxSimdLevel(), is ignored: compare the variable with
+/// the name of this level to notice.
 OPENSUBDIVHEX_API SimdLevel GetSimdLevel() noexcept;
 
 /// \brief Sets the level for all evaluations of the process that start from now on.  Meant for

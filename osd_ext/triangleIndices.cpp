@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "triangleIndices.h"
+#include "polygonIndices.h"
 
 #include "far_ext/vtr/parallel.h"
 

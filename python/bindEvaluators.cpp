@@ -7,7 +7,6 @@
 #include "stencilTable.h"
 
 #include "osd_ext/cpuEvaluator.h"
-#include "osd_ext/ompEvaluator.h"
 #include "osd_ext/refinementEvaluator.h"
 
 #include <algorithm>
@@ -341,8 +340,8 @@ void bindStencilEvaluator(py::module_ &module, char const *name, char const *doc
 void BindEvaluators(py::module_ &module) {
     bindStencilEvaluator<OsdExt::CpuEvaluator>(
         module, "CpuEvaluator", "Evaluates stencils on the calling thread, in ascending order.");
-    bindStencilEvaluator<OsdExt::OmpEvaluator>(
-        module, "OmpEvaluator",
+    bindStencilEvaluator<OsdExt::ParallelEvaluator>(
+        module, "ParallelEvaluator",
         "Evaluates stencils on as many threads as set_num_threads or OpenMP say, with the results "
         "of\n"
         "CpuEvaluator.");

@@ -7,8 +7,8 @@
 #include "refiner.h"
 
 #include "far_ext/baseFaceMap.h"
-#include "far_ext/limitStencilTableFactory.h"
-#include "osd_ext/triangleIndices.h"
+#include "far_ext/stencilTableFactory.h"
+#include "osd_ext/polygonIndices.h"
 
 #include <algorithm>
 #include <cstdint>

@@ -5,9 +5,8 @@
 #include "refiner.h"
 #include "stencilTable.h"
 
-#include "far_ext/patchMap.h"
 #include "far_ext/patchTableFactory.h"
-#include "osd_ext/ompEvaluator.h"
+#include "osd_ext/cpuEvaluator.h"
 
 #include <opensubdiv/osd/cpuPatchTable.h>
 
@@ -100,10 +99,10 @@ py::array_t<float> makePoints(StencilTable const &localPoints, py::object const 
     Osd::BufferDescriptor const control(0, int(width), int(width));
     Osd::BufferDescriptor const local(int(width) * numControl, int(width), int(width));
     Far::StencilTableReal<float> const &stencils = getStencils(localPoints);
-    OsdExt::OmpEvaluator::EvalStencils(data, control, data, local, stencils.GetSizes().data(),
-                                       stencils.GetOffsets().data(),
-                                       stencils.GetControlIndices().data(),
-                                       stencils.GetWeights().data(), 0, stencils.GetNumStencils());
+    OsdExt::ParallelEvaluator::EvalStencils(
+        data, control, data, local, stencils.GetSizes().data(), stencils.GetOffsets().data(),
+        stencils.GetControlIndices().data(), stencils.GetWeights().data(), 0,
+        stencils.GetNumStencils());
     return points;
 }
 
@@ -147,7 +146,7 @@ py::object evaluate(PatchTable const &self, py::object const &patches, py::objec
     {
         py::gil_scoped_release const release;
         Osd::BufferDescriptor const desc(0, width, width);
-        OsdExt::OmpEvaluator::EvalPatches(
+        OsdExt::ParallelEvaluator::EvalPatches(
             source.data, source.desc, outputs[0], desc, outputs[1], desc, outputs[2], desc,
             outputs[3], desc, outputs[4], desc, outputs[5], desc, int(places.size()), places.data(),
             isOfChannel ? table.GetFVarPatchArrayBuffer(channel) : table.GetPatchArrayBuffer(),

@@ -88,9 +88,17 @@ void takeListOfFaces(py::object const &faces, BaseMesh *mesh) {
         mesh->faceVertices = taken.reshape({taken.size()});
         return;
     }
+    auto const check = [](py::handle object, std::string const &name) {
+        if (!py::isinstance<py::iterable>(object)) {
+            throw py::type_error("faces must be a list of lists of int; " + name + " is " +
+                                 Py_TYPE(object.ptr())->tp_name);
+        }
+    };
+    check(faces, "it");
     py::list all;
     for (py::handle const face : faces) {
         std::string const name = "faces[" + std::to_string(mesh->faceSizes.size()) + "]";
+        check(face, name);
         py::array_t<int> const taken = TakeIndices(face, name.c_str());
         mesh->faceSizes.push_back(int(taken.size()));
         all.append(taken);
@@ -103,12 +111,13 @@ void takeListOfFaces(py::object const &faces, BaseMesh *mesh) {
 /// Takes creases or corners: a pair (components, sharpness).
 std::pair<py::object, py::object> takePair(py::object const &object, char const *name) {
     if (!py::isinstance<py::tuple>(object) && !py::isinstance<py::list>(object)) {
-        throw py::type_error(std::string(name) + ": a pair (indices, sharpness) is needed");
+        throw py::type_error(std::string(name) + ": a pair (indices, sharpness) is needed, not " +
+                             Py_TYPE(object.ptr())->tp_name);
     }
     auto const pair = py::reinterpret_borrow<py::sequence>(object);
     if (pair.size() != 2) {
         throw py::value_error(std::string(name) + ": a pair (indices, sharpness) is needed, not " +
-                              std::to_string(pair.size()) + " things");
+                              std::to_string(pair.size()) + " objects");
     }
     return {pair[0], pair[1]};
 }
@@ -223,9 +232,9 @@ createRefiner(py::object const &faces, py::object const &numVertices, py::object
     sdcOptions.SetCreasingMethod(
         TakeEnum<OpenSubdiv::Sdc::Options::CreasingMethod>(creasingMethod, "creasing_method"));
     TopologyRefinerFactory::Options options;
-    options.schemeOptions.faceMask = TakeEnum<FaceMask>(faceMask, "face_mask");
-    options.schemeOptions.schemeType = TakeEnum<SchemeType>(schemeType, "scheme_type");
-    options.schemeOptions.firstStep = TakeEnum<FirstStep>(firstStep, "first_step");
+    options.hexSchemeOptions.faceMask = TakeEnum<FaceMask>(faceMask, "face_mask");
+    options.hexSchemeOptions.schemeType = TakeEnum<SchemeType>(schemeType, "scheme_type");
+    options.hexSchemeOptions.firstStep = TakeEnum<FirstStep>(firstStep, "first_step");
 
     BaseMesh mesh;
     if (faceOffsets.is_none()) {
@@ -322,6 +331,10 @@ void BindRefiner(py::module_ &module) {
         "    num_fvar_values: of each channel; None: as many as it needs, within the same bounds\n"
         "    is_left_handed: whether the faces run clockwise\n"
         "    vtx_boundary_interpolation: a VtxBoundaryInterpolation, or its name; so the others\n\n"
+        "The defaults are the paper's, as in C++ and hexrefine, so that results are its own.\n"
+        "Renderers want face_mask='smooth', vtx_boundary_interpolation='edge_and_corner' and, for\n"
+        "triangles, first_step='truncate', as hexrefine --like renderer; hexview and the Blender\n"
+        "add-on begin with 'smooth'.\n\n"
         "Integers may have any type and are copied.  Raises StatusError for a mesh that cannot be\n"
         "refined; its code, component and index say why.  Warns with StatusWarning.\n\n"
         "Threads may share a refiner.  While arrays show its levels, refining again raises\n"

@@ -6,9 +6,8 @@
 #include "refiner.h"
 #include "stencilTable.h"
 
-#include "far_ext/limitStencilTableFactory.h"
 #include "far_ext/stencilTableFactory.h"
-#include "osd_ext/compactStencilTable.h"
+#include "osd_ext/stencilEvaluator.h"
 
 #include <optional>
 
@@ -137,20 +136,18 @@ py::array_t<int> getVerticesOfFaces(Refiner const &refiner, py::object const &ba
     return TakeOver(std::move(vertices));
 }
 
-py::dict estimateSize(Refiner const &refiner, TableOptions const &options, bool isDouble) {
+py::dict getSize(Refiner const &refiner, TableOptions const &options, bool isDouble) {
     CallStatus status;
     StencilTableSize const size = refiner.Read([&](TopologyRefiner const &topology) {
-        return isDouble
-                   ? StencilTableFactoryReal<double>::EstimateSize(topology, options.Get<double>(),
+        return isDouble ? StencilTableFactoryReal<double>::GetSize(topology, options.Get<double>(),
                                                                    &status)
-                   : StencilTableFactory::EstimateSize(topology, options.Get<float>(), &status);
+                        : StencilTableFactory::GetSize(topology, options.Get<float>(), &status);
     });
     RaiseUnlessOk(status);
     py::dict result;
     result["num_stencils"] = size.numStencils;
     result["num_weights"] = size.numWeights;
     result["num_bytes"] = size.numBytes;
-    result["num_peak_bytes"] = size.numPeakBytes;
     return result;
 }
 
@@ -177,7 +174,9 @@ LimitStencilTable createLimitTable(Refiner const &refiner, int level, bool gener
                 return;
             }
             made.table = StencilTable::Pointer<REAL>(table);
-            int const sourceLevel = factorizeIntermediateLevels ? 0 : level;
+            int const sourceLevel = factorizeIntermediateLevels ? 0
+                                    : level == -1               ? topology.GetMaxLevel()
+                                                                : level;
             made.numSources = topology.GetLevel(sourceLevel).GetNumVertices();
             made.hasDerivatives = generate1stDerivatives;
         });
@@ -321,19 +320,20 @@ void bindTable(py::module_ &module) {
             py::arg("refiner"), py::arg("base_faces"), py::arg("level"), py::kw_only(),
             py::arg("interpolation_mode") = "vertex", py::arg("fvar_channel") = 0)
         .def_static(
-            "estimate_size",
+            "get_size",
             [](Refiner const &refiner, py::object const &mode, bool controlVerts, bool intermediate,
                bool factorize, std::optional<int> maxLevel, int channel, py::object const &dtype) {
-                return estimateSize(
+                return getSize(
                     refiner,
                     takeOptions(mode, controlVerts, intermediate, factorize, maxLevel, channel),
                     takeIsDouble(dtype));
             },
-            "estimate_size(refiner, *, interpolation_mode='vertex', generate_control_verts=False,\n"
-            "              generate_intermediate_levels=True, factorize_intermediate_levels=True,\n"
-            "              max_level=None, fvar_channel=0, dtype='float32')\n\n"
-            "How large a table will be: a dict with the integers 'num_stencils', 'num_weights',\n"
-            "'num_bytes' of its arrays and 'num_peak_bytes' of its making.",
+            "get_size(refiner, *, interpolation_mode='vertex', generate_control_verts=False,\n"
+            "         generate_intermediate_levels=True, factorize_intermediate_levels=True,\n"
+            "         max_level=None, fvar_channel=0, dtype='float32')\n\n"
+            "How large a table will be: a dict with the integers 'num_stencils', 'num_weights' "
+            "and\n"
+            "'num_bytes' of its arrays.",
             py::arg("refiner"), py::kw_only(), py::arg("interpolation_mode") = "vertex",
             py::arg("generate_control_verts") = false,
             py::arg("generate_intermediate_levels") = true,
@@ -374,14 +374,14 @@ void bindTable(py::module_ &module) {
 void bindLimitTable(py::module_ &module) {
     py::class_<LimitStencilTable, StencilTable>(
         module, "LimitStencilTable",
-        "LimitStencilTable(refiner, level=0, *, generate_vertices=True,\n"
+        "LimitStencilTable(refiner, level=-1, *, generate_vertices=True,\n"
         "                  generate_further_sides=False, generate_face_centers=False,\n"
         "                  generate_1st_derivatives=True, factorize_intermediate_levels=True,\n"
         "                  dtype='float32')\n\n"
         "Points of the limit surface and its first derivatives there, in terms of control\n"
         "vertices, or of the vertices of the level.\n\n"
         "Args:\n"
-        "    level: whose vertices and faces are meant, with full topology\n"
+        "    level: whose vertices and faces are meant, with full topology; -1: the last\n"
         "    generate_vertices: whether each vertex has a point\n"
         "    generate_further_sides: whether the further sides of vertices have, as LimitSides\n"
         "        numbers them; after the vertices\n"
@@ -391,7 +391,7 @@ void bindLimitTable(py::module_ &module) {
         "        level: evaluators apply the table to refined values\n"
         "    dtype: of the weights, float32 or float64; evaluators take float32\n\n"
         "Raises StatusError.")
-        .def(py::init(&createLimitTable), py::arg("refiner"), py::arg("level") = 0, py::kw_only(),
+        .def(py::init(&createLimitTable), py::arg("refiner"), py::arg("level") = -1, py::kw_only(),
              py::arg("generate_vertices") = true, py::arg("generate_further_sides") = false,
              py::arg("generate_face_centers") = false, py::arg("generate_1st_derivatives") = true,
              py::arg("factorize_intermediate_levels") = true, py::arg("dtype") = "float32")

@@ -4,9 +4,7 @@
 #include "options.h"
 
 #include "far_ext/executor.h"
-#include "far_ext/threads.h"
 #ifdef _OPENMP
-#include "far_ext/ompExecutor.h"
 #endif
 #ifdef OPENSUBDIVHEX_HAS_TBB
 #include "far_ext/tbbExecutor.h"

@@ -32,9 +32,6 @@ void bindEnums(py::module_ &module) {
         .value("NONE", FirstStep::Same)
         .value("TRI_HEX", FirstStep::TriHex, "A step of the tri-hex scheme.")
         .value("TRUNCATE", FirstStep::Truncate, "Corners are cut off: for meshes of triangles.");
-    py::enum_<Interpolation>(module, "Interpolation", "What a mask is for.")
-        .value("VERTEX", Interpolation::Vertex)
-        .value("VARYING", Interpolation::Varying);
     py::enum_<StencilMode>(module, "StencilMode", "What stencils interpolate.")
         .value("VERTEX", INTERPOLATE_VERTEX)
         .value("VARYING", INTERPOLATE_VARYING)
@@ -81,90 +78,14 @@ void bindEnums(py::module_ &module) {
         .value("AVX512", OsdExt::SimdLevel::Avx512);
 }
 
-void checkSides(int n) {
-    if (n < 3) {
-        throw py::value_error("n: a face has 3 sides at least, not " + std::to_string(n));
-    }
-}
-
-void bindMasks(py::module_ &module) {
-    module.def(
-        "compute_face_vertex_mask",
-        [](py::object const &mask, py::object const &interpolation, int n) {
-            checkSides(n);
-            py::array_t<double> weights(n);
-            ComputeFaceVertexMask(TakeEnum<FaceMask>(mask, "mask"),
-                                  TakeEnum<Interpolation>(interpolation, "interpolation"), n,
-                                  weights.mutable_data());
-            return weights;
-        },
-        "compute_face_vertex_mask(mask, interpolation, n)\n\n"
-        "The weights of a face's vertices for its new point at vertex 0: float64, shape (n,).\n"
-        "Weight j is that of the vertex j places around the face.",
-        py::arg("mask"), py::arg("interpolation"), py::arg("n"));
-    module.def(
-        "compute_half_face_vertex_mask",
-        [](py::object const &mask, py::object const &interpolation) {
-            py::array_t<double> weights({4, 4});
-            ComputeHalfFaceVertexMask(TakeEnum<FaceMask>(mask, "mask"),
-                                      TakeEnum<Interpolation>(interpolation, "interpolation"),
-                                      weights.mutable_data());
-            return weights;
-        },
-        "compute_half_face_vertex_mask(mask, interpolation)\n\n"
-        "The weights of half a hexagon that a sharp boundary cuts along its edge from vertex 0 to\n"
-        "1: float64, shape (4, 4); row i is for the new point of corner i.",
-        py::arg("mask"), py::arg("interpolation"));
-    module.def(
-        "compute_tri_hex_mask",
-        [](int n) {
-            checkSides(n);
-            py::array_t<double> weights(n);
-            ComputeTriHexMask(n, weights.mutable_data());
-            return weights;
-        },
-        "compute_tri_hex_mask(n)\n\n"
-        "The weights for the new point of the edge from vertex 0 to 1 of a face, in the tri-hex\n"
-        "scheme: float64, shape (n,).",
-        py::arg("n"));
-    module.def(
-        "compute_sector_shrink",
-        [](py::object const &mask, double sectorSize) {
-            if (!(sectorSize >= kMinShrunkSector)) {
-                throw py::value_error("sector_size: 3 at least is needed, not " +
-                                      std::to_string(sectorSize));
-            }
-            return ComputeSectorShrink(TakeEnum<FaceMask>(mask, "mask"), sectorSize);
-        },
-        "compute_sector_shrink(mask, sector_size)\n\n"
-        "The factor by which new points are drawn towards their vertex, where it has sector_size\n"
-        "faces, 3 or more, between two sharp edges.",
-        py::arg("mask"), py::arg("sector_size"));
-    module.def(
-        "compute_vertex_vertex_mask",
-        [](py::object const &interpolation, int numFaces) {
-            if (numFaces < 0) {
-                throw py::value_error("num_faces: " + std::to_string(numFaces) + " is negative");
-            }
-            VertexVertexMask const mask = ComputeVertexVertexMask(
-                TakeEnum<Interpolation>(interpolation, "interpolation"), numFaces);
-            return py::make_tuple(mask.vertexWeight, mask.faceWeight);
-        },
-        "compute_vertex_vertex_mask(interpolation, num_faces)\n\n"
-        "The weight of an old vertex with so many faces for its new place, and that of the new\n"
-        "point in each of these faces: a pair of floats.",
-        py::arg("interpolation"), py::arg("num_faces"));
-}
-
 } // namespace
 
 void BindOptions(py::module_ &module) {
     bindEnums(module);
-    bindMasks(module);
     module.def("get_max_simd_level", &OsdExt::GetMaxSimdLevel,
                "get_max_simd_level()\n\nThe highest level that this build and this machine have.");
     module.def("get_simd_level", &OsdExt::GetSimdLevel,
-               "get_simd_level()\n\nThe level that CpuEvaluator and OmpEvaluator use.");
+               "get_simd_level()\n\nThe level that CpuEvaluator and ParallelEvaluator use.");
     module.def(
         "set_simd_level",
         [](py::object const &level) {

@@ -12,7 +12,7 @@ namespace OpenSubdivHex::Python {
 
 namespace py = pybind11;
 
-/// Adds the enumerations of options, masks and SIMD levels.
+/// Adds the enumerations of options, and SIMD levels.
 void BindOptions(py::module_ &module);
 
 /// Adds executors and numbers of threads.

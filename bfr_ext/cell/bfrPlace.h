@@ -31,7 +31,7 @@ BfrPlace FindBfrPlace(Bfr::Parameterization const &parameterization, Pair const 
 /// The derivatives at the middle of an edge are those of the second sub-face, in which Bfr has it.
 BfrPlace MakeBfrEdgePlace(Bfr::Parameterization const &parameterization, int edge, int i, int n);
 
-/// The same place in the child that has it.
+/// The place in the child that has it.
 BfrPlace MoveToChild(BfrPlace const &place, CellStep const &step, int faceSize);
 
 /// \brief Turns derivatives by the coordinates of the plane of a base face into those by u and v, number by number.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "borderEvaluator.h"
 
-#include "bfr_ext/polyline.h"
+#include "bfr_ext/cellTree.h"
 
 namespace OpenSubdivHex::BfrExt::internal {
 
@@ -171,7 +171,7 @@ void BorderEvaluator<REAL>::EvaluateRate(std::size_t edge, int rate, REAL *resul
     evaluateInside(edge, true, rate, results, stride);
 }
 
-// That of the places of a level, or of a rate.
+// The matrix of a level, or of a rate.
 template <typename REAL>
 PlaceMatrix<REAL> const &BorderEvaluator<REAL>::findPlaces(bool isRate, int level) {
     PatternTable *const patterns = &getPatterns(*_edge.type, _edge.cell);

@@ -22,10 +22,10 @@ public:
     /// \param turns  those of FindBaseCellTurns()
     void SetFace(CellType const &type, int const *turns, REAL const *points, std::ptrdiff_t stride,
                  std::size_t size);
-    /// The same of a plain one that is not in a lattice, with all its points.
+    /// Overload for a plain face that is not in a lattice, with all its points.
     void SetFace(PlainFaceType const &type, int const *turns, std::size_t numPoints,
                  REAL const *points, std::ptrdiff_t stride, std::size_t size);
-    /// Of the rings of a plain face.
+    /// The values of the rings of a plain face.
     RingValues<REAL> &GetRingValues() { return _values; }
 
     /// Writes the point of a vertex.
@@ -48,7 +48,7 @@ public:
     std::size_t GetSize() const { return _size; }
 
 private:
-    // What the places of an edge are sums of.
+    // Sources of the points of an edge.
     struct Sources {
         CellType const *type;
         RingCell const *cell; // null: the points of the type
@@ -66,7 +66,7 @@ private:
     PlaceMatrix<REAL> const &findVertex(CellType const &type);
     void evaluateInside(std::size_t edge, bool isRate, int level, REAL *results,
                         std::ptrdiff_t stride);
-    // What a plain face has no rings for.
+    // An item for which a plain face has no rings.
     CellType::BorderItem const &getItem(std::size_t item) const {
         return _plain ? _plain->GetLatticeItem(_turns, item) : _type->GetBorderItem(_turns, item);
     }
@@ -84,7 +84,7 @@ private:
     std::ptrdiff_t _stride = 0;
     std::size_t _size = 0;
     std::size_t _paddedSize = 0;
-    // Of the edge that was last asked for, if any.
+    // For the last edge, if any.
     std::size_t _edgeNumber = 0;
     Sources _edge = {};
     bool _isReversed = false;

@@ -2,7 +2,6 @@
 #ifndef OPENSUBDIVHEX_BFR_EXT_CELL_CELL_MEASURES_H
 #define OPENSUBDIVHEX_BFR_EXT_CELL_CELL_MEASURES_H
 
-#include "flatness.h"
 #include "vector3.h"
 
 #include <algorithm>
@@ -13,33 +12,26 @@
 
 namespace OpenSubdivHex::BfrExt::internal {
 
-/// A box along the axes, which has no point at first.
-struct Box {
-    static constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
-    bool HasPoints() const { return least[0] <= largest[0]; }
-    void Add(double const *point) {
-        for (std::size_t k = 0; k < 3; ++k) {
-            least[k] = std::min(least[k], point[k]);
-            largest[k] = std::max(largest[k], point[k]);
-        }
-    }
-
-    Vector3 least = {kInfinity, kInfinity, kInfinity};
-    Vector3 largest = {-kInfinity, -kInfinity, -kInfinity};
+/// A ball that encloses some points.
+struct Ball {
+    Vector3 center = {};
+    double radius = 0;
 };
 
-/// \brief What is known of a cell wherever it is seen from, as far as a view has asked for it.
+/// \brief Measures of a cell that do not depend on the camera, as far as views have asked for them.
 struct CellMeasures {
-    Box box;                 ///< of its points
-    double longestSide = -1; ///< between corners; -1: not found
-    double thickness = -1;   ///< as Flatness estimates it; -1: not found
-    int firstChild = 0;      ///< in the same face; 0: none were asked for
-    int facing = -1;         ///< in the same face; -1: not found
+    Ball ball;               ///< around the surface, estimated
+    double longestSide = -1; ///< between corners; -1: not measured
+    double thickness =
+        -1; ///< range of the heights over the plane of the corners, estimated; -1: not measured
+    double childThickness =
+        0;              ///< what is expected of its children, where these are not measured with it
+    int firstChild = 0; ///< in the same face; 0: none were asked for
+    int facing = -1;    ///< in the same face; -1: not found
 };
 
-/// \brief Where a cell faces, estimated from the polygons of the corners of the cells that some steps make of it, and from
-/// the normals of the surface at its own corners.
+/// \brief Where a cell faces, estimated from the polygons of the corners of the cells that one or two steps make of it, and
+/// from the normals of the surface at its own corners.
 ///
 /// With m the unit normal of all, others are m + s w, with w of length 1 at most in the plane across from it.  With c the
 /// mean of the places and r how far they are from it, (m + s w) . (eye - p) is at most m . (eye - c) - m . (p - c) +
@@ -127,7 +119,7 @@ struct FaceMeasures {
     std::vector<CellFacing> facings;
 };
 
-/// Those of all base faces of a mesh.  Several threads may work at different faces.
+/// The measures of all base faces of a mesh.  Several threads may work at different faces.
 struct MeshMeasures {
     explicit MeshMeasures(int numFaces) : faces(std::size_t(numFaces)) {}
 

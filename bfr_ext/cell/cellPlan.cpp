@@ -13,8 +13,6 @@ constexpr int kNumStepsOfHalves = 4;
 constexpr int kNumStepsOfWholes = 3;
 constexpr int kNumStepsOfFaces = 5; // in lattices
 
-Pair getMiddle(Pair const &p, Pair const &q) { return {(p[0] + q[0]) / 2, (p[1] + q[1]) / 2}; }
-
 // Sorts runs by their rows, and joins those that follow one another.
 void joinRuns(std::vector<PlaceRun> &runs) {
     std::sort(runs.begin(), runs.end(),
@@ -43,7 +41,7 @@ LeafPlaces::LeafPlaces(int faceSize, int numSteps) : _faceSize(faceSize), _numSt
             add({sector, {1, 0}});
         }
         refine({-1, {{{1, 0}}}}, numSteps);
-        // Those on the sides last: tessellations have them apart, or first.
+        // Points on the sides come last: tessellations have them apart, or first.
         std::stable_partition(_places.begin(), _places.end(), [](Place const &place) {
             return place.coords[0] + place.coords[1] != 1;
         });
@@ -114,22 +112,15 @@ void LeafPlaces::refine(Cell const &root, int numSteps) {
                 children.push_back({-1, {{{scale / 2, 0}}}});
                 for (int sector = 0; sector < _faceSize; ++sector) {
                     add({sector, {scale / 2, 0}});
-                    children.push_back(
-                        {sector, {{{scale, 0}, {0, scale}, {0, scale / 2}, {scale / 2, 0}}}});
+                    children.push_back({sector, HalfCell::GetCornersAtEdge<Pair>(scale)});
                 }
                 continue;
             }
-            Pair const middle = getMiddle(cell.corners[0], cell.corners[1]);
-            std::array<Pair, 4> inner;
             for (std::size_t i = 0; i < 4; ++i) {
-                inner[i] = getMiddle(cell.corners[i], middle);
-                add({cell.sector, inner[i]});
+                children.push_back({cell.sector, HalfCell::GetCornersOfChild(cell.corners, i)});
             }
-            children.push_back({cell.sector, inner});
-            for (std::size_t i = 1; i < 4; ++i) {
-                std::size_t const next = (i + 1) % 4;
-                children.push_back(
-                    {cell.sector, {{cell.corners[i], cell.corners[next], inner[next], inner[i]}}});
+            for (Pair const &inner : children[children.size() - 4].corners) {
+                add({cell.sector, inner});
             }
         }
         cells.swap(children);

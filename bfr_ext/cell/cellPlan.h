@@ -84,11 +84,11 @@ public:
         Pair toCoords[2];
         std::vector<CornerPlace> corners;
     };
-    /// What is to be evaluated.
-    enum class Use { Points, Derivatives };
+    /// Points inside of the face, all points, or derivatives.
+    enum class Use { Points, AllPoints, Derivatives };
 
     /// \param level        that of the places, at most
-    /// \param places       of points, those on the border of the face are made apart
+    /// \param places       with Use::Points, those on the border of the face are made apart
     /// \param isInLattice  whether many faces are of the type of the base face
     CellPlan(int faceSize, int level, std::vector<LeafPlaces::Place> const &places, Use use,
              bool isInLattice);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cellShape.h"
 
+#include "halfCell.h"
+
 #include <algorithm>
 
 namespace OpenSubdivHex::BfrExt::internal {
@@ -80,28 +82,14 @@ bool hasCornerOnSide(Outline const &a, Outline const &b) {
 
 CellShape CellShape::GetChild(CellTree const &tree, int child) const {
     int const first = tree.GetFirstChild(number) + child;
+    if (isWhole && child == 0) {
+        return {first, level + 1, true, 0, scale / 2, {}};
+    }
     if (isWhole) {
-        std::int32_t const half = scale / 2;
-        if (child == 0) {
-            return {first, level + 1, true, 0, half, {}};
-        }
-        return {first,     level + 1, false,
-                child - 1, 0,         {{{scale, 0}, {0, scale}, {0, half}, {half, 0}}}};
+        return {first, level + 1, false, child - 1, 0, HalfCell::GetCornersAtEdge<Place>(scale)};
     }
-    auto const getMiddle = [](Place const &p, Place const &q) {
-        return Place{(p[0] + q[0]) / 2, (p[1] + q[1]) / 2};
-    };
-    Place const middle = getMiddle(corners[0], corners[1]);
-    auto const getInner = [&](std::size_t i) { return getMiddle(corners[i], middle); };
-    CellShape result = {first, level + 1, false, sector, 0, {}};
-    if (child == 0) {
-        result.corners = {{getInner(0), getInner(1), getInner(2), getInner(3)}};
-    } else {
-        auto const i = std::size_t(child);
-        std::size_t const next = (i + 1) % 4;
-        result.corners = {{corners[i], corners[next], getInner(next), getInner(i)}};
-    }
-    return result;
+    return {first,  level + 1, false,
+            sector, 0,         HalfCell::GetCornersOfChild(corners, std::size_t(child))};
 }
 
 // Cells have their corners on the sides of those that they meet, or have corners of these on their own.

@@ -19,10 +19,10 @@ struct CellShape {
     static constexpr int kBits = Polyline::kLastLevel + 2;
     static constexpr std::int32_t kOne = std::int32_t(1) << kBits;
 
-    /// That of the base face.
+    /// The shape of the base face.
     static CellShape MakeFace() { return {0, 0, true, 0, kOne, {}}; }
 
-    /// That of a child, of a cell that \p tree has refined.
+    /// The shape of a child, of a cell that \p tree has refined.
     CellShape GetChild(CellTree const &tree, int child) const;
 
     /// Whether a half cell has a point in common with another cell.

@@ -9,6 +9,7 @@
 namespace OpenSubdivHex::BfrExt::internal {
 
 using FarExt::internal::BasePolygon;
+using FarExt::internal::UsePolygon;
 
 namespace {
 
@@ -46,73 +47,34 @@ Pair clampToHalf(Pair const &coords) {
     return {std::min(std::max(coords[0], 0.5 * h), 1 - 0.5 * h), h};
 }
 
-// The linear map from u and v, relative to the centre, to the coordinates in a sector.
-void makeSectorMap(BasePolygon const &polygon, int sector, Pair (&rows)[2]) {
-    Pair const start = polygon.GetCorner(sector);
-    Pair const end = polygon.GetCorner((sector + 1) % polygon.GetSize());
-    double const determinant = start[0] * end[1] - start[1] * end[0];
-    rows[0] = {end[1] / determinant, -end[0] / determinant};
-    rows[1] = {-start[1] / determinant, start[0] / determinant};
+template <typename POLYGON>
+BasePoint makeBasePoint(POLYGON const &polygon, int sector, Pair const &coords) {
+    std::array<Pair, 2> const &map = polygon.GetSectorMap(sector);
+    return {sector, coords, {map[0], map[1]}};
 }
 
-// The plane of a face of a common size: places are found in it by the million.
-struct KnownPolygon {
-    static constexpr int kMaxSize = 8;
-
-    explicit KnownPolygon(int size) : center(BasePolygon(size).GetCenter()) {
-        for (int sector = 0; sector < size; ++sector) {
-            makeSectorMap(BasePolygon(size), sector, maps[sector]);
-        }
-    }
-
-    static KnownPolygon const &Get(int size) {
-        static KnownPolygon const kAll[] = {KnownPolygon(3), KnownPolygon(4), KnownPolygon(5),
-                                            KnownPolygon(6), KnownPolygon(7), KnownPolygon(8)};
-        return kAll[size - 3];
-    }
-
-    Pair center;
-    Pair maps[kMaxSize][2];
-};
-
-Pair getCenter(int size) {
-    return size <= KnownPolygon::kMaxSize ? KnownPolygon::Get(size).center
-                                          : BasePolygon(size).GetCenter();
-}
-
-void findSectorMap(int size, int sector, Pair (&rows)[2]) {
-    if (size <= KnownPolygon::kMaxSize) {
-        auto const &known = KnownPolygon::Get(size).maps[sector];
-        rows[0] = known[0];
-        rows[1] = known[1];
-    } else {
-        makeSectorMap(BasePolygon(size), sector, rows);
-    }
-}
-
-} // namespace
-
-BasePoint FindBasePoint(int size, double u, double v, double tolerance) {
-    Pair const center = getCenter(size);
-    // Of finite coordinates the products are finite.
+template <typename POLYGON>
+BasePoint findBasePoint(POLYGON const &polygon, int size, double u, double v, double tolerance) {
+    Pair const center = polygon.GetCenter();
+    // Products of finite coordinates are finite.
     double const x = std::clamp(u - center[0], -kFar, kFar);
     double const y = std::clamp(v - center[1], -kFar, kFar);
-    auto const findIn = [&](int sector) {
-        BasePoint point = {sector, {}, {}};
-        findSectorMap(size, sector, point.toCoords);
-        for (std::size_t i = 0; i < 2; ++i) {
-            point.coords[i] = point.toCoords[i][0] * x + point.toCoords[i][1] * y;
-        }
-        return point;
+    auto const findIn = [&](int sector, BasePoint &point) {
+        auto const &[a, b] = polygon.GetSectorMap(sector);
+        point.sector = sector;
+        point.coords = {a[0] * x + a[1] * y, b[0] * x + b[1] * y};
+        point.toCoords[0] = a;
+        point.toCoords[1] = b;
     };
     BasePoint best;
     if (size == 4) { // by far the most
         constexpr int kSectors[2][2] = {{0, 1}, {3, 2}};
-        best = findIn(kSectors[y > x ? 1 : 0][y > -x ? 1 : 0]);
+        findIn(kSectors[y > x ? 1 : 0][y > -x ? 1 : 0], best);
     } else {
-        best = findIn(0);
+        findIn(0, best);
         for (int sector = 1; sector < size; ++sector) {
-            BasePoint const point = findIn(sector);
+            BasePoint point;
+            findIn(sector, point);
             if (std::min(point.coords[0], point.coords[1]) >
                 std::min(best.coords[0], best.coords[1])) {
                 best = point;
@@ -125,15 +87,21 @@ BasePoint FindBasePoint(int size, double u, double v, double tolerance) {
     best.coords = clampToSector(best.coords);
     // Between two sectors it is the second, as in tessellations.
     if (best.coords[0] == 0) {
-        return MakeBasePoint(size, (best.sector + 1) % size, {best.coords[1], 0});
+        best = makeBasePoint(polygon, (best.sector + 1) % size, {best.coords[1], 0});
     }
     return best;
 }
 
+} // namespace
+
+BasePoint FindBasePoint(int size, double u, double v, double tolerance) {
+    return UsePolygon(
+        size, [&](auto const &polygon) { return findBasePoint(polygon, size, u, v, tolerance); });
+}
+
 BasePoint MakeBasePoint(int size, int sector, Pair const &coords) {
-    BasePoint point = {sector, coords, {}};
-    findSectorMap(size, sector, point.toCoords);
-    return point;
+    return UsePolygon(size,
+                      [&](auto const &polygon) { return makeBasePoint(polygon, sector, coords); });
 }
 
 CellStep FindCellStep(bool isWhole, int sector, Pair const &coords) {
@@ -228,9 +196,10 @@ void CellStencil::Place::AddDerivatives(std::size_t corner, double weight,
     Pair ofCorner[2] = {toCoords[0], toCoords[1]};
     if (type->IsWhole()) {
         // The corner has the coordinates of its own sector, larger by what the steps have made them.
-        findSectorMap(type->GetNumCorners(), int(corner), ofCorner);
-        for (Pair &row : ofCorner) {
-            row = {std::ldexp(row[0], depth), std::ldexp(row[1], depth)};
+        BasePoint const point = MakeBasePoint(type->GetNumCorners(), int(corner), {});
+        for (std::size_t i = 0; i < 2; ++i) {
+            ofCorner[i] = {std::ldexp(point.toCoords[i][0], depth),
+                           std::ldexp(point.toCoords[i][1], depth)};
         }
     }
     for (std::size_t k = 0; k < 2; ++k) {

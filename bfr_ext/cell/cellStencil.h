@@ -44,7 +44,7 @@ CellStep FindCellStep(bool isWhole, int sector, Pair const &coords);
 /// \param faceSize  of a whole cell; 0: of half cells
 int FindCellCorner(int faceSize, int sector, Pair const &coords);
 
-/// What stencils are sums of.
+/// Sources of stencils.
 enum class StencilOf {
     Points, ///< of a type
     Step    ///< what the step of the type makes, by row of CellType::GetStep()
@@ -60,7 +60,7 @@ enum class StencilOf {
 /// corners.  Elsewhere they are those of the first derivatives from corner to corner of a cell.
 class CellStencil {
 public:
-    /// Those of a type of base faces.
+    /// Stencils of a type of base faces.
     explicit CellStencil(CellType const &root, StencilOf of = StencilOf::Points)
         : _root(root), _of(of) {}
 

@@ -129,7 +129,7 @@ CellType::CellType(CellTypes &types, CellPatch cell, CellRules const &rules)
 std::vector<CellType::Child> const &CellType::GetChildren() const {
     std::call_once(_onceChildren, [&] {
         CellRefinement refinement =
-            RefineCell(_cell, _rules.sdcOptions, _rules.schemeOptions, _rules.interpolation);
+            RefineCell(_cell, _rules.sdcOptions, _rules.hexSchemeOptions, _rules.interpolation);
         std::vector<Child> children;
         children.reserve(refinement.children.size());
         for (std::size_t i = 0; i < refinement.children.size(); ++i) {
@@ -192,7 +192,7 @@ void CellType::findDifferences(int corner, int numSteps, Vector (&result)[2]) co
         steps.push_back(&child.step);
         type = child.type;
     }
-    // Of a half cell, at an end of its long edge.
+    // For a half cell, at an end of its long edge.
     std::vector<Vector> const &points = type->GetCornerPoints();
     Vector differences[2];
     auto &[along, across] = differences;
@@ -344,8 +344,8 @@ CellType::BorderItem const &CellType::GetBorderItem(int const *turns, std::size_
 
 std::vector<double> CellType::FindPatchPoints(PatchAges const &ages) const {
     std::vector<double> rows;
-    if (!FindCellPatchPoints(_cell, _rules.sdcOptions, _rules.schemeOptions, _rules.interpolation,
-                             ages, rows)
+    if (!FindCellPatchPoints(_cell, _rules.sdcOptions, _rules.hexSchemeOptions,
+                             _rules.interpolation, ages, rows)
              .IsOk()) {
         rows.assign(std::size_t(GetNumCellPatches(_cell.kind, GetNumCorners())) *
                         std::size_t(kNumPatchPoints) * std::size_t(GetNumPoints()),
@@ -379,7 +379,7 @@ CellTypes::Key CellTypes::getKey(CellRules const &rules) {
     Key key;
     for (int const number : {int(rules.sdcOptions.GetVtxBoundaryInterpolation()),
                              int(rules.sdcOptions.GetCreasingMethod()),
-                             int(rules.schemeOptions.faceMask), int(rules.interpolation)}) {
+                             int(rules.hexSchemeOptions.faceMask), int(rules.interpolation)}) {
         addNumber(number, key);
     }
     return key;

@@ -23,10 +23,10 @@ class PlainFaceTypes;
 class RingCells;
 struct RingItem;
 
-/// What besides its patch tells the surface of a cell.
+/// The inputs of a cell's surface besides its patch.
 struct CellRules {
     Sdc::Options sdcOptions;
-    FarExt::HexSchemeOptions schemeOptions; ///< those of the steps to the limit
+    FarExt::HexSchemeOptions hexSchemeOptions; ///< those of the steps to the limit
     FarExt::Interpolation interpolation = FarExt::Interpolation::Vertex;
 };
 
@@ -73,13 +73,13 @@ public:
     static constexpr std::size_t kMaxLatticeFaceSize = 6;
     /// Whether the surface has bounded curvature where the lattice is regular.
     bool HasBoundedCurvature() const {
-        return _rules.schemeOptions.faceMask != FarExt::FaceMask::Average &&
+        return _rules.hexSchemeOptions.faceMask != FarExt::FaceMask::Average &&
                _rules.interpolation == FarExt::Interpolation::Vertex;
     }
 
     /// Whether it is continuous there.
     bool HasContinuousCurvature() const {
-        return _rules.schemeOptions.faceMask == FarExt::FaceMask::Smooth &&
+        return _rules.hexSchemeOptions.faceMask == FarExt::FaceMask::Smooth &&
                _rules.interpolation == FarExt::Interpolation::Vertex;
     }
 
@@ -104,9 +104,8 @@ public:
     struct Derivatives {
         std::vector<double> rows[2];
     };
-    /// \brief The derivatives that the cell before has at a corner which they share, by the coordinates of
-    /// this one and in terms of its points; those of this cell differ where steps make derivatives grow or
-    /// shrink.
+    /// \brief The parent's corner derivatives, in this cell's coordinates and control points.  They differ from this
+    /// cell's own where steps make derivatives grow or shrink.
     Derivatives const &GetParentDerivatives(int corner) const;
     /// @name The derivatives at a corner, as of GetCorners() and of GetParentDerivatives(), as sums of the
     /// points that the step makes, by row of GetStep()
@@ -131,7 +130,7 @@ public:
     /// \brief The points of the Gregory patches of a cell, as FarExt::internal::FindCellPatchPoints() has them;
     /// not numbers where it has no limit at a corner.
     std::vector<double> FindPatchPoints(FarExt::internal::PatchAges const &ages) const;
-    /// What has been made of this type.
+    /// The matrices of this type, made on demand.
     PatternTable &GetPatterns() const { return _patterns; }
 
 private:
@@ -180,7 +179,7 @@ public:
     CellType const &Find(FarExt::internal::CellPatch &&cell, CellRules const &rules);
     /// The types of plain base faces with some rules.
     PlainFaceTypes &GetPlainFaces(CellRules const &rules);
-    /// What the first step makes of plain faces with some rules.
+    /// Products of the first step of plain faces with some rules.
     RingCells &GetRingCells(CellRules const &rules);
     /// Calls function(finder), which no other thread uses then, for the limit masks of \p rules.
     template <typename FUNCTION>
@@ -191,7 +190,7 @@ public:
         std::unique_ptr<FarExt::internal::LimitMaskFinder> &finder = _masks[getKey(rules)];
         if (!finder || ++_numMaskUses % kMaxUses == 0) {
             finder = std::make_unique<FarExt::internal::LimitMaskFinder>(rules.sdcOptions,
-                                                                         rules.schemeOptions);
+                                                                         rules.hexSchemeOptions);
         }
         return function(*finder);
     }

@@ -19,16 +19,16 @@ namespace OpenSubdivHex::BfrExt::internal {
 /// of a plain base face outside of lattices are made by its rings, without a CellType of the face.
 class CellValues {
 public:
-    /// That of a base face, whose control points are \p length numbers each, without gaps.
+    /// The values of a base face, whose control points are \p length numbers each, without gaps.
     void SetBase(CellType const &root, double const *controlPoints, int length);
-    /// The same of a plain face that is not in a lattice.
+    /// Overload for a plain face that is not in a lattice.
     void SetBase(PlainFaceType const &root, double const *controlPoints, int length);
     /// \brief A child, in the order of RefineCell().
     ///
     /// \param parent  another object
     void SetChild(CellValues const &parent, int child);
 
-    /// That of a plain base face is made when it is asked for.
+    /// The type of a plain base face is made on demand.
     CellType const &GetType() const { return _plain ? _plain->Get() : *_type; }
     /// Whether it is a plain base face, whose children alone need types.
     bool IsPlainBase() const { return _plain != nullptr; }
@@ -37,7 +37,7 @@ public:
     int GetNumChildren() const;
     int GetLevel() const { return _level; }
 
-    /// Of the patch's vertices, as long as the cell is not set again.
+    /// Points of the patch's vertices, valid until the cell is set again.
     int GetNumPoints() const { return _numPoints; }
     /// The numbers of a point, those of the next being GetPaddedSize() behind them.
     double const *GetPoint(int point) const {

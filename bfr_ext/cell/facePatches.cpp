@@ -1,17 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "facePatches.h"
 
+#include "baseType.h"
 #include "lanes.h"
 #include "placeKernel.h"
 #include "refinedCells.h"
 
-#include "bfr_ext/surface.h"
 #include "far_ext/patch/cellPatchPoints.h"
 #include "far_ext/vtr/inline.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <type_traits>
 #include <utility>
 #include <vector>
@@ -169,11 +170,8 @@ Quadrilateral findInKite(Pair const &coords, double m) {
 } // namespace
 
 int GetNumFacePatches(int size, int level) {
-    int numPatches = GetNumCellPatches(CellKind::Whole, size);
-    for (int i = 0; i < level; ++i) {
-        numPatches += size * getNumHalfPatches(i);
-    }
-    return numPatches;
+    // A sector has 1 + 4 + 16 ... half cells.
+    return GetNumCellPatches(CellKind::Whole, size) + size * (getNumHalfPatches(level) - 1) / 3;
 }
 
 namespace {
@@ -246,7 +244,8 @@ PatchPlace FindPatchPlace(BfrPlace const &ofFace, int size, int level, int numDe
     for (; left > 0 && coords[0] + coords[1] <= 0.5; --left) {
         coords = {2 * coords[0], 2 * coords[1]};
     }
-    PatchPlace place = {};
+    PatchPlace place;
+    place.patch = 0;
     Quadrilateral in;
     Linear linear;
     // Each step halves cells, but that from the sector to the half cell, which is part of the map.
@@ -304,7 +303,7 @@ namespace {
 template <typename TYPE, typename REAL>
 void makePoints(TYPE const &type, int faceSize, int level, REAL const *control, int size,
                 std::ptrdiff_t stride, REAL *points) {
-    // What they have taken of memory is kept for the next face.
+    // Their memory is kept for the next face.
     static thread_local RefinedCells cells;
     static thread_local std::vector<double> packed;
     packed.clear();
@@ -348,92 +347,97 @@ struct Bernstein {
     REAL weights[3][4];
 };
 
-template <typename REAL>
-OPENSUBDIVHEX_INLINE Lanes<REAL> sum(REAL const (&weights)[4], Lanes<REAL> const *points) {
-    return points[0] * weights[0] + points[1] * weights[1] +
-           (points[2] * weights[2] + points[3] * weights[3]);
-}
-
-// Some numbers of the points of a patch, as a bicubic patch has them at a place.
-template <typename REAL>
-class PatchLanes {
+// Some numbers of the points of a patch, summed up row by row, by t, as those of a bicubic patch.
+//
+// IS_PACKED: points are three numbers each, without gaps; else numLanes of them are lanes.
+template <int NUM_DERIVATIVES, bool IS_PACKED, typename REAL>
+class PatchSums {
 public:
-    // \param numLanes    how many numbers of a point are there
-    // \param isFollowed  whether all points but the last have numbers behind them that nobody writes
-    OPENSUBDIVHEX_INLINE PatchLanes(REAL s, REAL t, REAL const *points, std::ptrdiff_t stride,
-                                    int numLanes, bool isFollowed) {
-        auto const share = [](REAL a, REAL b) { return a + b > 0 ? a / (a + b) : REAL(0.5); };
-        auto const get = [&](int i) {
-            REAL const *const point = points + i * stride;
-            if (isFollowed && i + 1 < kNumPatchPoints) {
-                return Lanes<REAL>::Load(point);
-            }
-            Lanes<REAL> result = {};
-            std::copy_n(point, numLanes, result.values);
-            return result;
-        };
-        auto const blend = [&](int corner, REAL first) {
-            return get(5 * corner + 3) * first + get(5 * corner + 4) * (1 - first);
-        };
-        constexpr int kBorder[4][4] = {
-            {0, 1, 7, 5}, {2, -1, -1, 6}, {16, -1, -1, 12}, {15, 17, 11, 10}};
-        for (int row = 0; row < 4; ++row) {
-            for (int column = 0; column < 4; ++column) {
-                if (kBorder[row][column] >= 0) {
-                    _grid[row][column] = get(kBorder[row][column]);
-                }
-            }
-        }
-        _grid[1][1] = blend(0, share(s, t));
-        _grid[1][2] = blend(1, share(t, 1 - s));
-        _grid[2][2] = blend(2, share(1 - s, 1 - t));
-        _grid[2][1] = blend(3, share(1 - t, s));
+    OPENSUBDIVHEX_INLINE PatchSums(REAL s, REAL t, REAL const *points, std::ptrdiff_t stride,
+                                   int numLanes)
+        : _byS(s), _byT(t), _points(points), _stride(IS_PACKED ? 3 : stride),
+          _numLanes(IS_PACKED ? 3 : numLanes) {
+        addRow<0>(load(0), load(1), load(7), load(5));
+        addRow<1>(load(2), blend(3, s, t), blend(8, t, 1 - s), load(6));
+        addRow<2>(load(16), blend(18, 1 - t, s), blend(13, 1 - s, 1 - t), load(12));
+        addRow<3>(load(15), load(17), load(11), load(10));
     }
 
-    // The rows, by t, of a derivative by s.
-    OPENSUBDIVHEX_INLINE void FindRows(REAL const (&weights)[4], Lanes<REAL> *rows) const {
-        for (int row = 0; row < 4; ++row) {
-            rows[row] = sum(weights, _grid[row]);
-        }
-    }
+    Lanes<REAL> point = {};
+    Lanes<REAL> ds = {};
+    Lanes<REAL> dt = {};
+    Lanes<REAL> dss = {};
+    Lanes<REAL> dst = {};
+    Lanes<REAL> dtt = {};
 
 private:
-    Lanes<REAL> _grid[4][4];
+    OPENSUBDIVHEX_INLINE Lanes<REAL> load(int i) const {
+        REAL const *const from = _points + i * _stride;
+        if constexpr (IS_PACKED) {
+            return i + 1 < kNumPatchPoints ? Lanes<REAL>::Load(from) // with a number of the next
+                                           : Lanes<REAL>{{from[0], from[1], from[2], 0}};
+        }
+        Lanes<REAL> result = {};
+        std::copy_n(from, _numLanes, result.values);
+        return result;
+    }
+
+    // The two points inside of a corner; where both distances are 0, their mean.
+    OPENSUBDIVHEX_INLINE Lanes<REAL> blend(int first, REAL ofFirst, REAL ofSecond) const {
+        constexpr REAL kLeast = std::numeric_limits<REAL>::min();
+        REAL const share = (ofFirst + kLeast) / (ofFirst + ofSecond + 2 * kLeast);
+        return load(first) * share + load(first + 1) * (1 - share);
+    }
+
+    template <int ROW>
+    OPENSUBDIVHEX_INLINE void addRow(Lanes<REAL> const &a, Lanes<REAL> const &b,
+                                     Lanes<REAL> const &c, Lanes<REAL> const &d) {
+        auto const sum = [&](REAL const(&weights)[4]) {
+            return a * weights[0] + b * weights[1] + (c * weights[2] + d * weights[3]);
+        };
+        Lanes<REAL> const ofPoint = sum(_byS.weights[0]);
+        point = point + ofPoint * _byT.weights[0][ROW];
+        if constexpr (NUM_DERIVATIVES > 0) {
+            Lanes<REAL> const ofDs = sum(_byS.weights[1]);
+            ds = ds + ofDs * _byT.weights[0][ROW];
+            dt = dt + ofPoint * _byT.weights[1][ROW];
+            if constexpr (NUM_DERIVATIVES > 1) {
+                dss = dss + sum(_byS.weights[2]) * _byT.weights[0][ROW];
+                dst = dst + ofDs * _byT.weights[1][ROW];
+                dtt = dtt + ofPoint * _byT.weights[2][ROW];
+            }
+        }
+    }
+
+    Bernstein<REAL> const _byS;
+    Bernstein<REAL> const _byT;
+    REAL const *const _points;
+    std::ptrdiff_t const _stride;
+    int const _numLanes;
 };
 
-template <int NUM_DERIVATIVES, typename REAL>
+template <int NUM_DERIVATIVES, bool IS_PACKED, typename REAL>
 void evaluateLanes(PatchPlace const &place, REAL const *points, std::ptrdiff_t stride, int numLanes,
-                   bool isFollowed, int lane, REAL *const *results) {
-    auto const s = REAL(place.s);
-    auto const t = REAL(place.t);
-    Bernstein<REAL> const byS(s);
-    Bernstein<REAL> const byT(t);
-    PatchLanes<REAL> const patch(s, t, points + lane, stride, numLanes, isFollowed);
+                   REAL *const *results, int firstResult) {
+    PatchSums<NUM_DERIVATIVES, IS_PACKED, REAL> const sums(REAL(place.s), REAL(place.t), points,
+                                                           stride, numLanes);
     auto const write = [&](int result, Lanes<REAL> const &values) {
-        std::copy_n(values.values, numLanes, results[result] + lane);
+        std::copy_n(values.values, IS_PACKED ? 3 : numLanes, results[result] + firstResult);
     };
-    Lanes<REAL> rows[3][4]; // by derivatives by s
-    for (int order = 0; order <= NUM_DERIVATIVES; ++order) {
-        patch.FindRows(byS.weights[order], rows[order]);
-    }
-    write(0, sum(byT.weights[0], rows[0]));
+    write(0, sums.point);
     if constexpr (NUM_DERIVATIVES > 0) {
-        Lanes<REAL> const ds = sum(byT.weights[0], rows[1]);
-        Lanes<REAL> const dt = sum(byT.weights[1], rows[0]);
         auto const &[toS, toT] = place.first;
-        write(1, ds * REAL(toS[0]) + dt * REAL(toT[0]));
-        write(2, ds * REAL(toS[1]) + dt * REAL(toT[1]));
+        write(1, sums.ds * REAL(toS[0]) + sums.dt * REAL(toT[0]));
+        write(2, sums.ds * REAL(toS[1]) + sums.dt * REAL(toT[1]));
         if constexpr (NUM_DERIVATIVES > 1) {
-            Lanes<REAL> const dss = sum(byT.weights[0], rows[2]);
-            Lanes<REAL> const dst = sum(byT.weights[1], rows[1]);
-            Lanes<REAL> const dtt = sum(byT.weights[2], rows[0]);
             constexpr std::size_t kBy[3][2] = {{0, 0}, {0, 1}, {1, 1}};
             for (std::size_t k = 0; k < 3; ++k) {
                 auto const [i, j] = kBy[k];
-                write(int(3 + k),
-                      dss * REAL(toS[i] * toS[j]) + dst * REAL(toS[i] * toT[j] + toS[j] * toT[i]) +
-                          dtt * REAL(toT[i] * toT[j]) +
-                          (ds * REAL(place.second[k][0]) + dt * REAL(place.second[k][1])));
+                write(int(3 + k), sums.dss * REAL(toS[i] * toS[j]) +
+                                      sums.dst * REAL(toS[i] * toT[j] + toS[j] * toT[i]) +
+                                      sums.dtt * REAL(toT[i] * toT[j]) +
+                                      (sums.ds * REAL(place.second[k][0]) +
+                                       sums.dt * REAL(place.second[k][1])));
             }
         }
     }
@@ -448,22 +452,24 @@ void EvaluatePatch(PatchPlace const &place, int numDerivatives, REAL const *poin
     REAL const *const first = points + std::ptrdiff_t(place.patch) * kNumPatchPoints * stride;
     for (int lane = 0; lane < size; lane += kLanes) {
         int const numLanes = std::min(kLanes, size - lane);
-        bool const isFollowed = lane + kLanes <= size || stride == size;
-        auto const evaluate = [&](auto numLanesOfAll) {
-            constexpr int kNum = decltype(numLanesOfAll)::value;
-            int const number = kNum > 0 ? kNum : numLanes;
+        auto const evaluate = [&](auto isPacked) {
+            constexpr bool kIsPacked = decltype(isPacked)::value;
+            auto const evaluateTo = [&](auto number) {
+                evaluateLanes<decltype(number)::value, kIsPacked>(place, first + lane, stride,
+                                                                  numLanes, results, lane);
+            };
             if (numDerivatives == 0) {
-                evaluateLanes<0>(place, first, stride, number, isFollowed, lane, results);
+                evaluateTo(std::integral_constant<int, 0>());
             } else if (numDerivatives == 1) {
-                evaluateLanes<1>(place, first, stride, number, isFollowed, lane, results);
+                evaluateTo(std::integral_constant<int, 1>());
             } else {
-                evaluateLanes<2>(place, first, stride, number, isFollowed, lane, results);
+                evaluateTo(std::integral_constant<int, 2>());
             }
         };
-        if (numLanes == 3) { // by far the most
-            evaluate(std::integral_constant<int, 3>());
+        if (size == 3 && stride == 3) { // by far the most
+            evaluate(std::true_type());
         } else {
-            evaluate(std::integral_constant<int, 0>());
+            evaluate(std::false_type());
         }
     }
 }

@@ -33,7 +33,7 @@ public:
 
     int GetFaceSize() const { return _cells.GetFaceSize(); }
     int GetNumSections() const { return int(_sections.size()); }
-    /// Of edges, then of the inside; none of a tree.
+    /// Levels of edges, then of the inside; empty for a tree.
     std::vector<int> const &GetLevels() const { return _levels; }
     /// The points of an edge of the face.
     Polyline const &GetEdge(int edge) const {
@@ -43,7 +43,7 @@ public:
 
     /// The vertices of the sections.
     std::vector<CellMesh::Vertex> const &GetVertices() const { return _mesh->GetVertices(); }
-    /// Those of a section, counter-clockwise, with those that others have on its sides.
+    /// Vertices of a section, counter-clockwise, with those that other sections have on its sides.
     std::vector<int> GetPolygon(int section) const {
         return _mesh->GetPolygon(_sections[std::size_t(section)]);
     }

@@ -17,7 +17,7 @@ class FaceWalk {
 public:
     using Index = Far::Index;
 
-    /// What a face has behind one of its vertices.
+    /// The part of a face behind one of its vertices.
     struct Next {
         Index vert;
         Index place; ///< of that vertex in the same face

@@ -14,7 +14,7 @@ namespace OpenSubdivHex::BfrExt::internal {
 /// Two coordinates in a cell, or derivatives of these.
 using Pair = std::array<double, 2>;
 
-/// \brief What the coordinates in one cell are in terms of those in another: a linear map and a shift.
+/// \brief Map of coordinates in one cell to those in another: linear, and a shift.
 struct CellMap {
     Pair Apply(Pair const &p) const {
         return {shift[0] + (rows[0][0] * p[0] + rows[0][1] * p[1]),
@@ -81,6 +81,33 @@ public:
     /// The child that has a corner, and which corner of that it is.
     static constexpr int kCornerChildren[4] = {3, 1, 2, 3};
     static constexpr int kCornersOfChildren[4] = {1, 0, 0, 0};
+
+    /// @name Corners in any coordinates in which lines are straight, two numbers each
+    /// @{
+
+    /// Of the half cell that a step makes at the edge of a sector, of a whole cell whose corners are so far from the
+    /// centre.
+    template <typename PLACE, typename SCALE>
+    static std::array<PLACE, 4> GetCornersAtEdge(SCALE scale) {
+        SCALE const half = scale / 2;
+        return {{{scale, 0}, {0, scale}, {0, half}, {half, 0}}};
+    }
+    /// Of a child of a half cell.
+    template <typename PLACE>
+    static std::array<PLACE, 4> GetCornersOfChild(std::array<PLACE, 4> const &corners,
+                                                  std::size_t child) {
+        auto const getMiddle = [](PLACE const &p, PLACE const &q) {
+            return PLACE{(p[0] + q[0]) / 2, (p[1] + q[1]) / 2};
+        };
+        PLACE const middle = getMiddle(corners[0], corners[1]);
+        auto const getInner = [&](std::size_t i) { return getMiddle(corners[i], middle); };
+        if (child == 0) {
+            return {{getInner(0), getInner(1), getInner(2), getInner(3)}};
+        }
+        std::size_t const next = (child + 1) % 4;
+        return {{corners[child], corners[next], getInner(next), getInner(child)}};
+    }
+    /// @}
 
     /// How much the corners weigh in the bilinear interpolation between them.
     static std::array<double, 4> GetCornerWeights(Pair const &point) {

@@ -35,7 +35,7 @@ public:
 
     PatchCorners const &GetCorners() const { return _corners; }
 
-    // Of a vertex, from the corners there.
+    // The weights of a vertex, from the corners there.
     Weights const &FindVertex(std::vector<int> const &ring) {
         return find(Kind::Vertex, getKey(ring),
                     [&](Refinement const &refinement, RefinementRules const &rules) {
@@ -75,7 +75,7 @@ public:
 private:
     enum class Kind { Vertex, FVertex, Face, Hexagon };
 
-    // What masks around a vertex depend on.
+    // Key of the masks around a vertex.
     std::vector<int> getKey(std::vector<int> const &ring) const {
         constexpr int kQuad = 4;
         int const numFaces = int(ring.size());
@@ -93,7 +93,7 @@ private:
             std::vector<double> weights;
             CellRules const &ofCells = _masks.GetRules();
             FarExt::internal::UseNextMasks(
-                _patch, ofCells.sdcOptions, ofCells.schemeOptions, ofCells.interpolation,
+                _patch, ofCells.sdcOptions, ofCells.hexSchemeOptions, ofCells.interpolation,
                 [&](Refinement const &refinement, RefinementRules const &rules) {
                     weights = make(refinement, rules);
                 });

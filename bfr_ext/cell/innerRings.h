@@ -35,7 +35,7 @@ public:
     ///
     /// Else masks depend on no neighbours, and cells are of few types behind the first step.
     bool AreUsed() const {
-        return _rules.schemeOptions.faceMask == FarExt::FaceMask::Smooth &&
+        return _rules.hexSchemeOptions.faceMask == FarExt::FaceMask::Smooth &&
                _rules.interpolation == FarExt::Interpolation::Vertex;
     }
 

@@ -18,6 +18,48 @@ namespace OpenSubdivHex::BfrExt::internal {
 
 namespace Far = OpenSubdiv::Far;
 
+/// A face, behind which its points and turns lie.
+template <typename TYPE>
+struct KeptFace {
+    using Index = Far::Index;
+
+    Index const *GetPoints() const { return reinterpret_cast<Index const *>(this + 1); }
+    Index const *GetTurns() const { return GetPoints() + numPoints; }
+
+    /// What it takes with so many points and turns, in bytes.
+    static std::size_t GetMemory(std::size_t count) {
+        return sizeof(KeptFace) + count * sizeof(Index);
+    }
+    /// Makes one of memory that has the points and turns already, \p count of them, behind the place of the rest.
+    static KeptFace const &Make(void *memory, TYPE const &type, int size, std::size_t count) {
+        static_assert(alignof(Index) <= alignof(KeptFace));
+        return *new (memory) KeptFace{type, size, int(count) - 2 * size};
+    }
+
+    TYPE type;
+    int size;
+    int numPoints; ///< without the turns
+};
+
+/// The points and turns of a KeptFace in bytes of one's own, from which it is made when they are there.
+template <typename TYPE>
+class FacePoints {
+public:
+    using Index = Far::Index;
+
+    explicit FacePoints(std::vector<std::byte> &bytes) : _bytes(bytes) {}
+
+    void resize(std::size_t count) { _bytes.resize(KeptFace<TYPE>::GetMemory(count)); }
+    std::size_t size() const { return (_bytes.size() - sizeof(KeptFace<TYPE>)) / sizeof(Index); }
+    Index *data() { return reinterpret_cast<Index *>(_bytes.data() + sizeof(KeptFace<TYPE>)); }
+    KeptFace<TYPE> const &Make(TYPE const &type, int faceSize) {
+        return KeptFace<TYPE>::Make(_bytes.data(), type, faceSize, size());
+    }
+
+private:
+    std::vector<std::byte> &_bytes;
+};
+
 /// \brief The types and the points that surfaces of a mesh's faces have: what a face has is kept when it was
 /// found twice, as long as there is memory.
 ///
@@ -29,14 +71,7 @@ class KeptFaces {
 public:
     using Index = Far::Index;
 
-    /// A face, behind which its points and turns lie.
-    struct Face {
-        Index const *GetPoints() const { return reinterpret_cast<Index const *>(this + 1); }
-
-        TYPE type;
-        int size;
-        int numPoints; ///< without the turns
-    };
+    using Face = KeptFace<TYPE>;
 
     /// \param owner      of the types
     /// \param numKinds   of data, each of which has points of its own
@@ -57,12 +92,10 @@ public:
         return found == &_metOnce ? nullptr : found;
     }
 
-    /// \brief Keeps a face that is added a second time: for others it is not worth the memory.
+    /// \brief Keeps a copy of a face that is added a second time: for others it is not worth the memory.
     ///
-    /// \param points  its points and turns
-    /// \return        the one that is kept; null where none is
-    Face const *Add(std::size_t kind, Index face, TYPE const &type, int size,
-                    std::vector<Index> const &points) {
+    /// \return  the one that is kept; null where none is
+    Face const *Add(std::size_t kind, Index face, Face const &own) {
         // Without this, all threads would wait for the lock with each face that there is no memory for.
         if (_isFull.load(std::memory_order_relaxed) ||
             _kinds[kind].isRefused.load(std::memory_order_relaxed)) {
@@ -84,19 +117,19 @@ public:
         if (found != &_metOnce) {
             return found;
         }
-        void *const memory = allocate(sizeof(Face) + points.size() * sizeof(Index));
+        std::size_t const count = std::size_t(own.numPoints) + 2 * std::size_t(own.size);
+        auto *const memory = static_cast<std::byte *>(allocate(Face::GetMemory(count)));
         if (!memory) {
             return nullptr;
         }
-        Face *const added = new (memory) Face{type, size, int(points.size()) - 2 * size};
-        std::copy(points.begin(), points.end(), reinterpret_cast<Index *>(added + 1));
+        std::copy_n(own.GetPoints(), count, reinterpret_cast<Index *>(memory + sizeof(Face)));
+        Face const *const added = &Face::Make(memory, own.type, own.size, count);
         slots[face].store(added, std::memory_order_release);
         return added;
     }
 
 private:
     static_assert(std::is_trivially_destructible_v<TYPE>);
-    static_assert(alignof(Index) <= alignof(Face));
 
     using Slot = std::atomic<Face const *>;
     struct Kind {

@@ -15,7 +15,7 @@ struct Leaf {
     RingCell const *ringCell;
     LeafPlaces const &places;
 
-    // What is a sum of the points of the type, as one of those of the rings.
+    // Expands a sum of the points of the type into one of the points of the rings.
     std::vector<double> const &Order(std::vector<double> const &weights,
                                      std::vector<double> &scratch) const {
         if (!ringCell) {
@@ -36,7 +36,7 @@ struct Leaf {
 // Weights of some places, by point.
 using Rows = std::vector<std::vector<double>>;
 
-// What a leaf is evaluated with.
+// Matrices that evaluate a leaf.
 template <typename REAL, std::size_t COUNT>
 using LeafMatrices = std::array<PlaceMatrix<REAL>, COUNT>;
 
@@ -282,7 +282,7 @@ void PatchEvaluator<REAL>::evaluateLeaf(CellType const &type, RingCell const *ri
     turnDerivatives(leaf);
 }
 
-// Those by the coordinates of a leaf become those by u and v.
+// Turns derivatives by the coordinates of a leaf into derivatives by u and v.
 template <typename REAL>
 void PatchEvaluator<REAL>::turnDerivatives(CellPlan::Node const &leaf) const {
     auto const &[first, second] = leaf.toCoords;
@@ -327,7 +327,7 @@ void PatchEvaluator<REAL>::evaluateCorners(CellType const &type, CellPlan::Node 
     }
 }
 
-// Of a base face, from the points of its rings.
+// A base face, from the points of its rings.
 template <typename REAL>
 void PatchEvaluator<REAL>::evaluateCorners(FaceRings const &face, CellPlan::Node const &cell,
                                            REAL const *points) {
@@ -339,7 +339,7 @@ void PatchEvaluator<REAL>::evaluateCorners(FaceRings const &face, CellPlan::Node
     }
 }
 
-// Of one of its children, whose indices are there.
+// One of its children, whose indices are known.
 template <typename REAL>
 void PatchEvaluator<REAL>::evaluateCorners(RingCell const &child, CellPlan::Node const &cell,
                                            REAL const *points) {
@@ -374,6 +374,13 @@ std::vector<REAL> &PatchEvaluator<REAL>::getPoints(std::size_t place, std::size_
     points.resize(std::max(points.size(), numPoints * _paddedSize));
     return points;
 }
+
+template <typename REAL>
+PlaceMatrix<REAL> const &GetLeafMatrix(CellType const &type, LeafPlaces const &places) {
+    return getPointMatrices<REAL>({type, nullptr, places})[0];
+}
+
+template PlaceMatrix<double> const &GetLeafMatrix(CellType const &, LeafPlaces const &);
 
 template class PatchEvaluator<float>;
 template class PatchEvaluator<double>;

@@ -23,7 +23,7 @@ public:
     void Evaluate(CellType const &type, CellPlan const &plan, int size, REAL const *controlPoints,
                   std::ptrdiff_t stride, REAL *results, std::ptrdiff_t resultStride);
 
-    /// The same with the derivatives by u and v.
+    /// Overload with the derivatives by u and v.
     ///
     /// \param plan  one for derivatives
     void EvaluateDerivatives(CellType const &type, CellPlan const &plan, int size,
@@ -65,6 +65,10 @@ private:
     REAL *_derivatives[2] = {};
     std::ptrdiff_t _resultStride = 0;
 };
+
+/// The matrix of a type for the places of a leaf.
+template <typename REAL>
+PlaceMatrix<REAL> const &GetLeafMatrix(CellType const &type, LeafPlaces const &places);
 
 } // namespace OpenSubdivHex::BfrExt::internal
 

@@ -13,7 +13,7 @@
 
 namespace OpenSubdivHex::BfrExt::internal {
 
-/// What a PatternTable of a type of cells has: one kind for each precision of a PatternOf.
+/// Kinds of entries of a PatternTable of a type of cells: one for each precision of a PatternOf.
 enum class PatternOf {
     Border,
     BorderPlace,
@@ -31,12 +31,11 @@ enum class PatternOf {
     ChildCorner,
     RingCell,
     RingItem,
-    SurfaceSamples,
     SecondDerivatives,
     PatchPoints
 };
 
-/// \brief What was made for some keys, of whatever type.
+/// \brief Values by key, of any type.
 ///
 /// Any number of threads may use it; what is there already is found without a lock.
 class PatternTable {
@@ -47,7 +46,7 @@ public:
         return 2 * int(of) + int(sizeof(REAL) == sizeof(double));
     }
 
-    /// \brief What make(), which gives a PATTERN, made when it was first called with a key.
+    /// \brief The PATTERN that make() made when it was first called with a key.
     ///
     /// \param kind         tells what PATTERN is, and how the rest is to be understood
     /// \param begin, end  the rest of the key

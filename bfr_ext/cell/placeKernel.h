@@ -98,7 +98,7 @@ struct PlaceSums {
     int const *indices;    ///< which points the columns of the matrix have, or null: all in turn
     REAL *results;
     std::ptrdiff_t resultStride;
-    /// Those that are wanted, ascending by row; or null: all, each where its row says.
+    /// The wanted points, ascending by row; null: all, each where its row says.
     PlaceRun const *runs = nullptr;
     std::size_t numRuns = 0;
 };

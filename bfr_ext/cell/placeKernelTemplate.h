@@ -170,7 +170,7 @@ public:
     /// The numbers of the places of a block, component by component.
     using Numbers = REAL[3][PlaceMatrix<REAL>::kMaxWidth];
 
-    /// The same place by place, of three components.
+    /// The numbers place by place, with three components.
     using Points = REAL[PlaceMatrix<REAL>::kMaxWidth][3];
 
     /// \param begin   the first place of the block
@@ -327,7 +327,7 @@ void forComponents(std::size_t numComponents, FUNCTION const &function) {
 struct PlaceBlock {
     std::size_t begin;
     std::size_t count; ///< up to the last one that is wanted
-    /// Those that are wanted; null: all.
+    /// The wanted places; null: all.
     PlaceRun const *firstRun;
     PlaceRun const *endRun;
 };

@@ -79,7 +79,7 @@ bool PlainFaceType::HasKey(PlainFaceKey const &key) const {
 // A vertex has its neighbours in the patch.
 static_assert(PlainFaceKey::kMaxVerts <= InnerRings::kMaxFaces);
 
-// Of threads that do so at once the first one makes it for all.
+// If several threads do so at once, the first one makes it for all.
 FaceRings const &PlainFaceType::makeRings() const {
     auto rings = std::make_unique<FaceRings const>(makeCell(false),
                                                    _types._types.GetRingCells(_types._rules));
@@ -364,29 +364,29 @@ void PlainFaceGatherer::writeTurns(Level const &level, Index face, Index *turns)
     }
 }
 
-PlainFaceType const *PlainFaceGatherer::Find(PlainFaceTypes &types, FaceWalk const &walk,
-                                             Index face, std::vector<Index> &points) {
-    Level const &level = walk.GetLevel();
+PlainFaceType const *PlainFaceGatherer::findType(PlainFaceTypes &types, FaceWalk const &walk,
+                                                 Index face) {
     _nexts = walk.GetNexts();
-    if (!findVertices(walk, face) || !findKey(level)) {
+    if (!findVertices(walk, face) || !findKey(walk.GetLevel())) {
         return nullptr;
     }
-    PlainFaceType const *type = types.Find(_key, _key.GetHash());
-    if (!type) {
-        _patch.Start(_faceSize);
-        if (!grow(_key.GetBytes(), _numVerts, _patch)) {
-            return nullptr;
-        }
-        type = &types.Add(_key, _numVerts, _patch);
+    if (PlainFaceType const *const type = types.Find(_key, _key.GetHash())) {
+        return type;
     }
-    int const numPoints = type->GetNumPoints();
-    points.resize(std::size_t(numPoints) + 2 * std::size_t(_faceSize));
-    writePoints(*type, points.data());
-    if (!areDistinct(points.data(), numPoints)) {
-        return nullptr;
+    _patch.Start(_faceSize);
+    return grow(_key.GetBytes(), _numVerts, _patch) ? &types.Add(_key, _numVerts, _patch) : nullptr;
+}
+
+// False where points are the same.
+bool PlainFaceGatherer::writeFace(Level const &level, Index face, PlainFaceType const &type,
+                                  Index *points) {
+    int const numPoints = type.GetNumPoints();
+    writePoints(type, points);
+    if (!areDistinct(points, numPoints)) {
+        return false;
     }
-    writeTurns(level, face, points.data() + numPoints);
-    return type;
+    writeTurns(level, face, points + numPoints);
+    return true;
 }
 
 } // namespace OpenSubdivHex::BfrExt::internal

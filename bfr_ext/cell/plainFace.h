@@ -15,7 +15,7 @@
 
 namespace OpenSubdivHex::BfrExt::internal {
 
-/// \brief What a plain base face has in its patch, in a few bytes: the size of the face, the numbers of
+/// \brief Describes the patch of a plain base face in a few bytes: the size of the face, the numbers of
 /// faces at its vertices and at their neighbours, in the order of the patch, and where these faces are
 /// not all of one size, their sizes.
 ///
@@ -61,7 +61,7 @@ public:
     int GetNumPoints() const { return _numVerts + int(_points.size()); }
     /// Those behind the vertices whose faces are all there.
     std::vector<Point> const &GetPoints() const { return _points; }
-    /// What evaluates them.
+    /// The type that evaluates the points, made on demand.
     CellType const &Get() const {
         CellType const *const type = _type.load(std::memory_order_acquire);
         return type ? *type : make();
@@ -130,10 +130,19 @@ public:
     /// \brief Finds the type of a face among some, and adds it where there is none.
     ///
     /// \param walk    of the surface level of a mesh, or of the values of a channel; another one may follow
-    /// \param points  the control points, and behind these the turns of FindBaseCellTurns()
+    /// \param points  the control points, and behind these the turns of FindBaseCellTurns(): a vector, or what has
+    ///                resize() and data() as that
     /// \return        null where the face is not plain, or may not be; then the points are of no use
+    template <typename POINTS>
     PlainFaceType const *Find(PlainFaceTypes &types, FaceWalk const &walk, Index face,
-                              std::vector<Index> &points);
+                              POINTS &points) {
+        PlainFaceType const *const type = findType(types, walk, face);
+        if (!type) {
+            return nullptr;
+        }
+        points.resize(std::size_t(type->GetNumPoints()) + 2 * std::size_t(_faceSize));
+        return writeFace(walk.GetLevel(), face, *type, points.data()) ? type : nullptr;
+    }
 
 private:
     // A vertex all of whose faces are in the patch, these beginning at a place of their own.
@@ -149,6 +158,9 @@ private:
         int numFaces;
     };
 
+    PlainFaceType const *findType(PlainFaceTypes &types, FaceWalk const &walk, Index face);
+    bool writeFace(FarExt::internal::Level const &level, Index face, PlainFaceType const &type,
+                   Index *points);
     bool addVertex(FaceWalk const &walk, Index vert, Index place, int turn);
     bool findVertices(FaceWalk const &walk, Index face);
     bool findKey(FarExt::internal::Level const &level);

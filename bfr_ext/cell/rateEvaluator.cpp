@@ -12,7 +12,7 @@ namespace {
 // Places of a block, in full blocks of matrices.
 constexpr std::size_t kBlockSize = 8 * PlaceMatrix<float>::kMaxWidth;
 static_assert(kBlockSize % PlaceMatrix<double>::kMaxWidth == 0);
-// Those of more places are not kept: matrices of a quad with a rate of 64 take half a megabyte.
+// Matrices of more points are not kept: for a quad with a rate of 64 they take half a megabyte.
 constexpr std::size_t kMaxKeptPlaces = 4096;
 
 // Calls function(matrices, begin) for blocks of matrices, which make(begin, end) makes of places [begin, end).
@@ -44,7 +44,7 @@ void addToRuns(int row, int place, std::vector<PlaceRun> &runs) {
     }
 }
 
-// Those places of a face that a child of it has, and which of all they are, from the first one's number on.
+// The points of a face in one of its children, and their numbers in the face, from the first one's on.
 std::vector<BfrPlace> selectPlaces(std::vector<BfrPlace> const &places, int first,
                                    std::size_t child, int faceSize, std::vector<PlaceRun> &runs) {
     std::vector<BfrPlace> result;
@@ -125,7 +125,7 @@ void RateEvaluator<REAL>::Evaluate(CellType const &type, REAL const *points,
 
 template <typename REAL>
 void RateEvaluator<REAL>::Evaluate(PlainFaceType const &type) {
-    // What they have taken of memory is kept for the next face.
+    // Their memory is kept for the next face.
     static thread_local std::vector<int> indices;
     FaceRings const &face = type.GetRings();
     RingValues<REAL> const &values = _border.GetRingValues();

@@ -53,7 +53,7 @@ public:
     void Evaluate(PlainFaceType const &type);
 
 private:
-    // What places are sums of: the points of a face, or the points of rings of which a child of it is made.
+    // Sources of points: the points of a face, or the points of the rings that make a child of it.
     struct Source {
         PatternTable &GetPatterns() const {
             return cell ? cell->GetPatterns() : type.GetPatterns();
@@ -84,7 +84,7 @@ private:
     void forEachEdge(FUNCTION const &function) const;
     void evaluateVertex(int edge, int first) const;
     void evaluateEdge(int edge, int rate, int first) const;
-    // What kind of face it is, with its parameterization.
+    // The kind of face, with its parameterization.
     int getFaceKey() const;
     void evaluateInside(Source const &source);
     void evaluateInside(Source const &source, PatternOf of);

@@ -35,13 +35,6 @@ public:
     std::size_t GetFirstChild(std::size_t cell) {
         return _cells[cell].firstChild > 0 ? _cells[cell].firstChild : makeChildren(cell);
     }
-    /// Whether many cells are of its type, so that SurfaceSamples are worth their making; beside faces of hundreds of
-    /// vertices these would take minutes.
-    bool HasSamples(std::size_t cell) const {
-        constexpr int kMaxPoints = 128;
-        return hasCommonType(cell) && _cells[cell].values.GetNumPoints() <= kMaxPoints;
-    }
-
     /// \brief Writes the surface at a corner.
     ///
     /// Cells whose types few are of have it from their children, so that few limit masks are needed.
@@ -63,7 +56,7 @@ public:
     static constexpr int kFirstCommonLevel = 2;
 
 private:
-    // That of the cell that the corner is evaluated from, and which corner of that it is.
+    // The values of the cell that the corner is evaluated from, and its number there.
     CellValues const &findCorner(std::size_t cell, int &corner);
 
     struct Cell {

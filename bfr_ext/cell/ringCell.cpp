@@ -19,7 +19,7 @@ using Cell = std::pair<CellPatch, std::vector<RingLayout>>;
 // The place of the vertex of a ring; others are behind the begin of the block of face 0.
 constexpr int kRingCenter = -1;
 
-// Those of the face that a patch is made for come first.
+// Vertices of the face that a patch is made for come first.
 std::vector<int> getCorners(int numCorners) {
     std::vector<int> corners(static_cast<std::size_t>(numCorners));
     std::iota(corners.begin(), corners.end(), 0);
@@ -27,7 +27,7 @@ std::vector<int> getCorners(int numCorners) {
 }
 
 CellRefinement refine(CellPatch const &cell, CellRules const &rules) {
-    return RefineCell(cell, rules.sdcOptions, rules.schemeOptions, rules.interpolation);
+    return RefineCell(cell, rules.sdcOptions, rules.hexSchemeOptions, rules.interpolation);
 }
 
 // The vertices of the level that a step makes, by row of it.
@@ -42,7 +42,7 @@ std::vector<Far::Index> findStepVertices(CellRefinement const &refinement) {
     return verts;
 }
 
-// What the first step makes of an edge or a vertex.
+// Product of the first step of an edge or a vertex.
 Cell makeItemCell(CellPatch const &item, CellRules const &rules) {
     return {std::move(refine(item, rules).children[0]), FindRingLayouts(item.patch, item.locals)};
 }
@@ -110,7 +110,7 @@ std::vector<REAL> const &RingCell::GetVertexWeights() const {
 }
 
 RingKey::RingKey() {
-    // Of a triangle with six faces at each vertex.
+    // For a triangle with six faces at each vertex.
     constexpr std::size_t kUsualSize = 128;
     _numbers.reserve(kUsualSize);
     _firstOccurrences.resize(kUsualSize, kNone);
@@ -177,7 +177,7 @@ std::unique_ptr<RingCell const> RingCells::make(CellPatch cell,
     return std::make_unique<RingCell const>(type, std::move(points), std::move(ofStep));
 }
 
-// What differs in rings alone that the cell does not depend on is the same.
+// Rings that differ only where the cell does not depend on them are equal.
 RingCell const &RingCells::find(CellPatch cell, std::vector<RingLayout> const &rings) {
     std::unique_ptr<RingCell const> ringCell = make(std::move(cell), rings);
     CellType const &type = ringCell->GetType();
@@ -284,7 +284,7 @@ private:
         });
     }
 
-    // Of an edge or, behind these, of a vertex.
+    // By edge, then by vertex.
     RingCell const &findItem(CellKind kind, RingKey const &key, int item, int turn) {
         return _cells.Find(kind, key, [&] {
             std::vector<int> turns(2 * std::size_t(_numEdges));

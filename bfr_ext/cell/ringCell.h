@@ -9,7 +9,7 @@
 
 namespace OpenSubdivHex::BfrExt::internal {
 
-/// \brief What vertices that a step makes are in the points of rings, in the order in which rings have them.
+/// \brief Vertices that a step makes as sums of the points of rings, in the order of the rings.
 class RingPlaces {
 public:
     /// Of none.
@@ -74,7 +74,7 @@ private:
     std::vector<std::size_t> _ends; // by ring, of columns
 };
 
-/// \brief What the first step makes of a plain base face: one of its cells, or the long edge of one of its
+/// \brief A product of the first step of a plain base face: one of its cells, or the long edge of one of its
 /// edges, or one of its V-vertices, the points of which are points of rings.
 ///
 /// What these are the rings tell, and so the sizes of some faces: there are far fewer of them than types of
@@ -85,13 +85,13 @@ private:
 /// type of any cell that has the same there; a V-vertex is taken for what it becomes.
 class RingCell {
 public:
-    /// What has sums of its own points.
+    /// A cell evaluated as sums of its own points.
     ///
     /// \param step    that made it
     /// \param points  of the type
     RingCell(CellType const &type, RingStep step, RingPlaces points)
         : _type(type), _lastStep(step), _isInner(false), _points(std::move(points)) {}
-    /// What has sums of the points behind the second step.
+    /// A cell evaluated as sums of the points behind the second step.
     ///
     /// \param inner  what the step of the type makes, by row of it
     RingCell(CellType const &type, RingPlaces points, RingPlaces inner)
@@ -116,7 +116,7 @@ public:
     template <typename REAL>
     std::vector<REAL> const &GetVertexWeights() const;
 
-    /// What has been made of it.
+    /// Its matrices, made on demand.
     PatternTable &GetPatterns() const { return _patterns; }
 
 private:
@@ -128,12 +128,12 @@ private:
     mutable PatternTable _patterns;
 };
 
-/// \brief What tells the cells that rings make: the sizes of faces, and the vertices, by when they occur first.
+/// \brief Key of the cells that rings make: the sizes of faces, and the vertices, by when they occur first.
 class RingKey {
 public:
-    /// Of no rings.
+    /// A key of no rings.
     RingKey();
-    /// Of some rings of the first step.
+    /// The key of some rings of the first step.
     explicit RingKey(std::vector<RingLayout> const &rings);
     void Clear();
     /// Adds a ring of the first step.
@@ -157,14 +157,14 @@ struct LatticeItem {
     CellType const *type;
 };
 
-/// What the first step makes of an edge of plain base faces, seen from one of them.
+/// Product of the first step of an edge of plain base faces, seen from one of them.
 struct RingEdge {
     RingCell const *half; ///< the cell on the side of the face
     /// The long edge, as the face runs, and against it.
     RingCell const *longEdges[2];
 };
 
-/// What the first step makes of a vertex of plain base faces.
+/// Product of the first step of a vertex of plain base faces.
 struct RingVertex {
     /// By how many faces lie before that which asks; one alone if these make no difference.
     std::vector<RingCell const *> vVertices;
@@ -198,7 +198,7 @@ public:
     RingEdge const &FindEdge(RingKey const &key, MAKE const &make) {
         return find<RingEdge>(_edges, 0, key, make);
     }
-    /// The same of a vertex, whose ring is told from the face on.
+    /// Overload for a vertex, whose ring begins at the face.
     template <typename MAKE>
     RingVertex const &FindVertex(RingKey const &key, MAKE const &make) {
         return find<RingVertex>(_vertices, 0, key, make);
@@ -318,7 +318,7 @@ public:
     std::size_t GetSize() const { return _size; }
     /// From one point to the next.
     std::size_t GetPaddedSize() const { return _paddedSize; }
-    /// Those of the rings.
+    /// The points of the rings.
     REAL const *GetPoints() const { return _points.data(); }
     /// Writes the point of the surface at a vertex, whose first face is \p firstFace of its ring.
     void EvaluateVertex(RingCell const &vVertex, int ring, int firstFace, REAL *result);

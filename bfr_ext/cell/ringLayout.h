@@ -64,7 +64,7 @@ struct Ring {
         }
         return size;
     }
-    /// What a block has besides the F-vertices of its face, which come last.
+    /// Number of points of a block before the F-vertices of its face.
     static constexpr std::size_t GetNumOthers(RingStep step) {
         return step == RingStep::First ? 1 : 9;
     }
@@ -85,27 +85,26 @@ struct Ring {
     }
 };
 
-/// \brief What is where in a ring, in vertices of the level that the step makes.
+/// \brief Layout of a ring, in vertices of the level that the step makes.
 ///
-/// What a step makes of two sets of rings is alike where their layouts are, but for the numbers of
-/// vertices.
+/// Two sets of rings with equal layouts make equal children, except for the numbers of vertices.
 struct RingLayout {
-    /// What is not a vertex of the level, or of no matter.
+    /// Marks entries that are no vertices of the level, or that are not used.
     static constexpr int kNone = -1;
 
     int center;
     std::vector<int> faceSizes;
     std::vector<int> verts; ///< from the block of face 0 to that of the last
 
-    /// The same of the first step from another face on.
+    /// The layout of the first step from another face on.
     RingLayout From(int firstFace) const;
 };
-/// Those of the first step from a patch.
+/// The layout of the first step from a patch.
 ///
 /// \param corners  those of VertexRings::Init(), which finds rings there
 std::vector<RingLayout> FindRingLayouts(FarExt::internal::LimitPatch const &patch,
                                         std::vector<int> const &corners);
-/// Those of the second step, from a patch that the first one makes.
+/// The layout of the second step, from a patch that the first step makes.
 ///
 /// \param rings  those of the first step
 std::vector<RingLayout> FindInnerLayouts(FarExt::internal::LimitPatch const &patch,

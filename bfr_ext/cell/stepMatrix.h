@@ -33,7 +33,7 @@ void PrefetchArray(std::vector<T> const &array) {
 /// All lies in one block: what a face needs is read from end to end, and is mostly not in the cache.
 class StepMatrix {
 public:
-    /// Of no points.
+    /// A matrix of no points.
     StepMatrix() = default;
     explicit StepMatrix(FarExt::internal::PatchRefinement const &step);
 
@@ -52,8 +52,7 @@ public:
         });
     }
 
-    /// \brief Numbers of a point that Apply() computes with at once: points have a multiple of it, the
-    /// last ones being of no matter.
+    /// \brief SIMD width of Apply(); points are padded to a multiple of it.
     static constexpr std::size_t kPadding = 4;
     static std::size_t GetPaddedSize(std::size_t size) {
         return (size + kPadding - 1) / kPadding * kPadding;
@@ -94,7 +93,7 @@ public:
         });
     }
 
-    /// The same of one number for each point.
+    /// Overload for one number per point.
     void Apply(std::vector<double> const &numbers, std::vector<double> &result) const {
         result.resize(_numRows);
         use([&](auto const &arrays) {
@@ -119,7 +118,7 @@ private:
         NUMBER point;
         NUMBER weight;
     };
-    // What a block has, one behind the other; END: a number of entries.
+    // Arrays of a block, one behind the other; END: a number of entries.
     template <typename NUMBER, typename END>
     struct Arrays {
         Arrays(std::byte const *block, std::size_t numWeights, std::size_t numRows)
@@ -183,7 +182,7 @@ public:
         }
     }
 
-    /// The same of one number for each point.
+    /// Overload for one number per point.
     void CopyNumbers(std::vector<double> const &numbers, std::vector<double> &result) const {
         result.resize(GetNumRows());
         for (std::size_t i = 0; i < result.size(); ++i) {
@@ -199,7 +198,7 @@ public:
 
     /// result = left A: what the points of the child weigh, in terms of the parent's.
     void ApplyLeft(std::vector<double> const &left, std::vector<double> &result) const;
-    /// What they weigh in terms of the points that the matrix makes, by row of it.
+    /// Their weights in terms of the points that the matrix makes, by row.
     void Spread(std::vector<double> const &left, std::vector<double> &result) const;
 
 private:

@@ -40,7 +40,7 @@ void copyPoints(REAL const *begin, REAL const *end, REAL *to) {
 // Writes the program of the rings of a patch.
 class VertexRings::Builder {
 public:
-    // What it has taken of memory is kept for the next patch.
+    // Its memory is kept for the next patch.
     struct Scratch {
         // A point, and which of the runs it belongs to.
         struct RunPoint {
@@ -154,7 +154,7 @@ private:
         }
         int const first = int(_scratch.weights.size());
         _scratch.weights.resize(_scratch.weights.size() + std::size_t(size));
-        FarExt::ComputeFaceVertexMask(_rules.schemeOptions.faceMask, _rules.interpolation, size,
+        FarExt::ComputeFaceVertexMask(_rules.hexSchemeOptions.faceMask, _rules.interpolation, size,
                                       &_scratch.weights[std::size_t(first)]);
         _scratch.masks.emplace_back(size, first);
         return first;

@@ -16,7 +16,7 @@
 
 namespace OpenSubdivHex::BfrExt::internal {
 
-/// What plans are made for.
+/// Key of plans.
 struct PlanOptions {
     LevelTessellation::Options tessellation;
     bool hasDerivatives;
@@ -29,7 +29,7 @@ struct PlanOptions {
     }
 };
 
-/// \brief What patches with the same levels, or the same tree, have in common: their tessellation, with the
+/// \brief Shared by patches with the same levels, or the same tree: their tessellation, with the
 /// cells its places lie in.
 struct PatchPlan {
     PatchPlan(std::vector<int> const &levels, PlanOptions const &options)
@@ -59,7 +59,7 @@ struct PatchPlan {
         return kBytesOfCoord + 8 * sizeof(int) + 2 * sizeof(int) + (hasDerivatives ? 300 : 160);
     }
 
-    /// What it has besides, and what the heap keeps of its arrays.
+    /// Bytes of its further members, and of the heap's share of its arrays.
     static constexpr std::size_t kBytesOfPlan = 2048;
 
     LevelTessellation const tessellation;
@@ -88,11 +88,11 @@ public:
     bool IsCut(double size, double numLeaves) const {
         return numLeaves > kMaxLeavesOfFace && size > double(_maxMemory) / 4;
     }
-    /// The same for a face with levels.
+    /// Overload for a face with levels.
     bool IsCut(std::vector<int> const &levels) const {
         return IsCut(double(GetSizeOfMaking(levels)), FaceSections::CountLeaves(levels));
     }
-    /// The same for a face with a tree.
+    /// Overload for a face with a tree.
     bool IsCut(CellTree const &tree) const {
         double const numLeaves = tree.GetNumLeaves();
         return IsCut(numLeaves * double(PatchPlan::GetBytesOfPlace(_options.hasDerivatives)),
@@ -112,7 +112,7 @@ public:
         return find(levels, GetSizeOfMaking(levels),
                     [&] { return std::make_shared<PatchPlan const>(levels, _options); });
     }
-    /// \brief That of a tree, which makeTessellation() gives where it is not there.
+    /// \brief The plan of a tree, whose tessellation makeTessellation() makes if there is none.
     ///
     /// Threads do not wait for each other: that of small trees takes little memory.
     ///
@@ -139,7 +139,7 @@ public:
     }
     /// Whether the faces of a forest with such a tree are likely to be several.
     static bool IsShared(CellTree const &tree) { return tree.GetNumCells() <= kMaxCellsOfShared; }
-    /// That of a section.
+    /// The plan of a section.
     std::shared_ptr<PatchPlan const> Find(FaceSections const &sections, int section) {
         std::vector<int> key = sections.GetLevels();
         key.push_back(-1 - section);
@@ -239,7 +239,7 @@ private:
 /// trees are some that there were.  Any number of threads may use it.
 class KeptPlans {
 public:
-    /// Those of the last call, or new ones where options differ.
+    /// The plans of the last call, or new ones where options differ.
     std::shared_ptr<PatchPlans> Find(PlanOptions const &options, std::size_t maxMemory) {
         std::lock_guard<std::mutex> const lock(_mutex);
         if (!_plans || !(_plans->GetOptions() == options) || _plans->GetMaxMemory() != maxMemory) {

@@ -24,16 +24,16 @@ public:
             _generation.reset();
             _generation = std::make_shared<Generation>(_factory);
         }
-        return std::shared_ptr<SurfaceFactory const>(_generation, &_generation->factory);
+        return std::shared_ptr<SurfaceFactory const>(_generation, _generation->factory.get());
     }
 
 private:
     struct Generation {
         explicit Generation(SurfaceFactory const &of)
-            : factory(of, SurfaceFactory::Options().SetExternalCache(&cache)) {}
+            : factory(of.CreateWith(SurfaceFactory::Options().SetExternalCache(&cache))) {}
 
         SurfaceFactoryCache cache;
-        SurfaceFactory factory;
+        std::unique_ptr<SurfaceFactory const> const factory;
     };
 
     SurfaceFactory const &_factory;

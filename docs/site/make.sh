@@ -34,6 +34,13 @@ fi
 # Where all classes within a class are private it links to a list of them that it does not make.
 grep -L 'name="nested-classes"' $out/html/class*.html | xargs sed -i \
     's|<a href="#nested-classes">Classes</a> &#124;||'
+# It links to friends that classes define, for which it makes no place.
+for friend in $({ grep -ohE 'hl_friend" href="[^"]*"' $out/html/*_source.html || true; } |
+    sed -E 's/.*href="([^"]*)"/\1/' | sort -u); do
+    if ! grep -q "id=\"${friend#*#}\"" "$out/html/${friend%#*}"; then
+        sed -i "s|href=\"$friend\"||g" $out/html/*.html
+    fi
+done
 # Doxygen does not ask for the documentation of enumerators.
 missing=$(awk '/<enumvalue /{said = 0} /<para>/{said = 1} /<name>/{name = $0}
     /<\/enumvalue>/{if (!said) print name}' $out/xml/*.xml | sed 's/<[^>]*>//g')

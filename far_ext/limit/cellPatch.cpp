@@ -181,7 +181,7 @@ struct RefinedPatch {
     Refinement refinement;
 };
 
-// What a step makes of a parent's cell, without the step.
+// The children of a parent's cell, without the step.
 class CellRefiner {
 public:
     CellRefiner(Refinement const &refinement, Sdc::Options sdcOptions, FaceMask faceMask,

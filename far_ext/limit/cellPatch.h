@@ -39,7 +39,7 @@ struct CellPatch {
     LimitPatch patch;
 
     int GetNumCorners() const { return int(locals.size()); }
-    /// Of a half cell, which half of a hexagon it is, as in kHexagonHalves.
+    /// For a half cell, which half of a hexagon it is, as in kHexagonHalves.
     int GetHalf() const { return locals[0] == kHexagonHalves[1][0] ? 1 : 0; }
 };
 
@@ -68,7 +68,7 @@ OPENSUBDIVHEX_API void FindBaseCellTurns(Level const &level, Far::Index face, in
 OPENSUBDIVHEX_API std::vector<CellPatch> GatherBorder(CellPatch const &baseCell, int const *turns,
                                                       Sdc::Options sdcOptions);
 
-/// \brief What one step makes of a cell: the cells that it becomes, and the vertices that their patches
+/// \brief The children of a cell in one step: cells, and the vertices that their patches
 /// have, each once, in terms of those of the cell's patch.
 struct CellRefinement {
     std::vector<CellPatch> children;

@@ -151,7 +151,7 @@ public:
         return !_axes.orbits.empty();
     }
 
-    /// Those of pairs first.
+    /// Orbits of pairs come first.
     std::vector<LatticeFaces::Orbit> GetOrbits() const {
         return joined(_pairs.orbits, _axes.orbits);
     }

@@ -43,11 +43,11 @@ public:
         int numOutputs = 0;        ///< of a face: all vertices of its orbits in turn
         /// \brief By face, the vertices.
         ///
-        /// Between two faces each makes half of the vertices, those that are no mirror images in it; a face
-        /// beyond which there is none makes all of them.  In place of a vertex that the other face
-        /// makes stands the first vertex of the last orbit, which lies inside, and so comes twice or more.
+        /// Of the vertices between two faces each face owns half, those that are no mirror images in it; a face without a
+        /// neighbour there owns all.  Slots owned by the neighbouring face hold a duplicate index, the first vertex of the
+        /// last orbit, which lies inside: so each vertex is written once or to equal values.
         Buffer<Index> outputs;
-        /// What stands in place of a vertex that the face does not make.
+        /// The duplicate index in slots that the neighbouring face owns.
         Index GetStandIn(std::size_t face) const {
             return outputs[(face + 1) * std::size_t(numOutputs) - std::size_t(patch.GetFaceSize())];
         }

@@ -20,7 +20,7 @@ struct LatticeOrbits {
     static constexpr int kNumPairs = IS_COMPACT ? 1 : FACE_SIZE == 6 ? 2 : 3;
 };
 
-/// \brief What the surface of a face depends on in the regular lattice of triangles, six at a vertex, of
+/// \brief The vertices that the surface of a face depends on in the regular lattice of triangles, six at a vertex, of
 /// quads, or of hexagons: the vertices of the faces at its vertices and at their neighbours.
 ///
 /// Vertices are numbered by their places: orbit after orbit, those on axes first, then pair after pair.

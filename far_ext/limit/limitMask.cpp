@@ -182,7 +182,7 @@ private:
         }
     }
 
-    // What the faces of a neighbour have beyond those of vertex 0.
+    // The faces of a neighbour beyond those of vertex 0.
     void placeOuterFaces(Level const &level, Index neighbor, bool inside) {
         constexpr double kFar = 2.6;
         double const angle = std::atan2(y[neighbor], x[neighbor]);
@@ -277,7 +277,7 @@ private:
         }
     }
 
-    // What lies on a sharp curve depends on the curve alone: of its modes the first is the tangent.
+    // A sharp curve depends on itself only: its first mode is the tangent.
     bool findAlong(FanItem const &edge, Vector &tangent) {
         tangent.assign(_layout.x.size(), 0.0);
         auto const place = std::lower_bound(_verts.begin(), _verts.end(), edge.neighbor);
@@ -402,7 +402,7 @@ private:
         });
     }
 
-    // Of a vector from the span of both tangents.
+    // The distance of a vector from the span of both tangents.
     static double measureDistance(Vector vector, LimitMask::Tangents const &tangents) {
         removeDirection(vector, tangents.du);
         removeDirection(vector, tangents.dv);
@@ -579,7 +579,7 @@ auto LimitMaskFinder::Find(LimitPatch const &patch) -> MaskPointer {
     return nullptr;
 }
 
-// The same for any patch that the cycle was found from: it begins with the least signature.
+// Any patch of the cycle gives one result: it begins with the least signature.
 bool LimitMaskFinder::addCycle(std::vector<Node> nodes) {
     auto const least =
         std::min_element(nodes.begin(), nodes.end(), [](Node const &a, Node const &b) {

@@ -110,7 +110,7 @@ void LimitMultiplier<REAL>::numberColumns(Index const *columns, int numColumns) 
     _columnOfIndex.ForEach(columns, numColumns, [](Entry &entry, int i) { entry.column = i; });
 }
 
-// Those of all sources; one that is among the last ones is not added again.
+// The lists of all sources; one that is among the last ones is not added again.
 template <typename REAL>
 void LimitMultiplier<REAL>::findLists() {
     constexpr int kNumCompared = 16;
@@ -208,7 +208,7 @@ void LimitMultiplier<REAL>::findDifferences(Columns const &columns) {
     }
 }
 
-// Of the vertices themselves: a term has one column.
+// For the vertices themselves: a term has one column.
 template <typename REAL>
 void LimitMultiplier<REAL>::scatterTerms(Term const *begin, Term const *end, int numColumns) {
     std::fill(_sums.begin(), _sums.end(), REAL(0));

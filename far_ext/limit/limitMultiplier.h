@@ -89,7 +89,7 @@ private:
         Index index;
         RowBits rows;
     };
-    // What sources have in common, and the rows that have any of these.
+    // Support that sources share, and the rows that have any of these sources.
     struct List {
         Support support;
         RowBits rows;

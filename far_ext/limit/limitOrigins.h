@@ -11,7 +11,7 @@
 
 namespace OpenSubdivHex::FarExt::internal {
 
-/// \brief What the limit at each vertex of a level is made of, for evaluation without tables.
+/// \brief Sources of the limit at each vertex of a level, for evaluation without tables.
 ///
 /// Vertices in lattice faces are made from level 0.  Else most are F-vertices of regular faces of a level
 /// before, or vertices of F-faces.  The others are sums of vertices of the last level.

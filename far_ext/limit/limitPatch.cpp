@@ -262,7 +262,7 @@ void LimitPatchGatherer::addFace(Index face, int local, bool isRing, LimitPatch 
         _corners.push_back(corner);
         Index const vert = addVertex(corner, patch);
         patch.faceVerts.push_back(vert);
-        // Of the faces further out, only the corners at the neighbours of vertex 0 matter.
+        // Only corners at the neighbours of vertex 0 matter of the faces further out.
         if (isRing || vert < _numComplete) {
             for (SectorCorner sector : _level.GetSectorCorners(corner, corner + 1)) {
                 sector.corner = patchFirst + i;
@@ -673,7 +673,7 @@ public:
         : _step(step), _sums(std::size_t(step.numParentVerts)),
           _hasSum(std::size_t(step.numParentVerts)) {}
 
-    // What a column has several times is summed up in the order in which it was added.
+    // Repeated entries of a column are summed in the order in which they were added.
     void Append(SparseRow const &row) {
         auto const first = std::ptrdiff_t(_step.verts.size());
         for (auto const &[column, weight] : row.entries) {

@@ -9,7 +9,7 @@
 
 namespace OpenSubdivHex::FarExt::internal {
 
-/// \brief What the limit at a vertex depends on: the faces around it and around its neighbours.
+/// \brief The neighbourhood that determines the limit at a vertex: the faces around it and around its neighbours.
 /// (Not so on free boundaries, where a neighbour stays a neighbour and has another beyond.)
 ///
 /// The patch of a vertex makes the patch of its V-vertex: the faces there are the E-faces of its
@@ -67,13 +67,13 @@ class LimitPatchGatherer {
 public:
     using Index = Far::Index;
 
-    /// Of a level that is refined with \p faceMask.
+    /// Gathers in a level that is refined with \p faceMask.
     LimitPatchGatherer(Level const &level, Sdc::Options sdcOptions, FaceMask faceMask)
         : _level(level), _creasing(sdcOptions), _faceMask(faceMask) {}
 
-    /// That of a vertex, with all of its fans.
+    /// The patch of a vertex, with all of its fans.
     void Gather(Index vert, LimitPatch &patch);
-    /// That of a vertex which comes apart, with the fan of one of its corners.
+    /// The patch of a vertex that comes apart, with the fan of one of its corners.
     void GatherFan(Index corner, LimitPatch &patch);
 
     /// \brief Gathers what the surface of a cell depends on: the faces around its corners and around
@@ -124,7 +124,7 @@ private:
     int _numComplete = 0;
     std::vector<Index> _corners; // the level's corner of each corner of the patch
     std::vector<Index> _lines;   // the level's line of each line of the patch
-    // Of the vertices that the patch is for: positions in vertFaces, and edges.
+    // Positions in vertFaces, and edges, of the vertices that the patch is for.
     std::vector<Index> _ringFaces;
     std::vector<Index> _ringEdges;
     FanItems _fan = {{}, false};
@@ -156,7 +156,7 @@ PatchRefinement MakePatchStep(Refinement const &refinement, HexSchemeOptions con
 PatchRefinement RefinePatch(LimitPatch const &pPatch, Sdc::Options sdcOptions,
                             HexSchemeOptions const &schemeOptions, LimitPatch &cPatch);
 
-/// \brief What lies at a vertex between two infinitely sharp edges, or all around it: the limit
+/// \brief The faces at a vertex between two infinitely sharp edges, or all around it: the limit
 /// surface has a tangent plane for each.  A fan of faces with fewer than two such edges is one
 /// side.
 struct VertexSide {

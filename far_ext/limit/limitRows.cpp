@@ -40,7 +40,7 @@ CallStatus CheckLimitLevel(Hierarchy const &hierarchy, HexSchemeOptions const &s
     return CallStatus();
 }
 
-/// What one thread finds masks with.
+/// Scratch memory of one thread.
 class LimitRows::Finder {
 public:
     explicit Finder(LimitRows const &rows)
@@ -71,7 +71,7 @@ public:
         }
     }
 
-    /// That of a patch.
+    /// The mask of a patch.
     std::shared_ptr<LimitMask const> Find(Index vert) {
         _gatherer.Gather(vert, _patch);
         return _finder.Find(_patch);

@@ -64,14 +64,14 @@ class OPENSUBDIVHEX_API LimitRows {
 public:
     using Index = Far::Index;
 
-    /// Those of a level for which CheckLimitLevel() is well; it is referred to.
+    /// Rows of a level that passes CheckLimitLevel(); refers to the level.
     LimitRows(Level const &level, Sdc::Options sdcOptions, HexSchemeOptions const &schemeOptions);
     ~LimitRows();
 
     /// Finds all masks, in parallel, or says for which vertex there is none: of those where
     /// kMaxFacesAtLimit is exceeded before anything else is done.
     CallStatus Find();
-    /// Those of \p verts alone, which ascend, beside those that are found already.
+    /// Finds the rows of \p verts only, which ascend, in addition to rows that are found already.
     CallStatus Find(std::vector<Index> const &verts);
 
     Level const &GetLevel() const { return _level; }
@@ -92,7 +92,7 @@ private:
     };
     /// The vertices of a range of the level that are not regular.
     struct Range {
-        /// That of the first fan of a vertex; \p vert is in the range.
+        /// The row of the first fan of a vertex; \p vert is in the range.
         std::vector<Entry>::const_iterator FindEntry(Index vert) const;
 
         std::vector<Entry> entries; ///< ascending

@@ -18,7 +18,7 @@ namespace {
 
 constexpr Index kRange = 64; // of faces, which take some microseconds each
 
-// What the rows of a type take to find, as many faces take to be made of them.
+// Number of faces that take as long to make by the rows of a type as finding these rows.
 constexpr int kMinFaces = 4;
 
 // Two steps before the last level, but behind the first: there the types are few, and many vertices are
@@ -145,7 +145,7 @@ void PlainFaces::listOutputs(Index face, std::vector<Index> &outputs) const {
 }
 
 void PlainFaces::setOutputs() {
-    // What comes twice in one face of a type does so in all.
+    // A vertex that occurs twice in one face of a type does so in all.
     std::vector<std::vector<std::size_t>> places(_types.size());
     _samples.resize(_types.size());
     std::vector<Index> listed;

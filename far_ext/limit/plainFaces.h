@@ -41,7 +41,7 @@ public:
     /// vertices.
     CallStatus FindRows(HexSchemeOptions const &schemeOptions, LimitRows &rows);
 
-    /// That of the faces.
+    /// The level of the faces.
     int GetLevel() const { return _level; }
     std::vector<Type> const &GetTypes() const { return _types; }
     std::vector<Face> const &GetFaces() const { return _faces; }

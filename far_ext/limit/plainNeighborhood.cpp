@@ -178,7 +178,7 @@ bool PlainNeighborhoodGatherer::addFace(Index face, int local, PlainNeighborhood
     return size < kEndOfBytes && result.sources.size() < kEndOfBytes;
 }
 
-// Of the faces further out, only the corners at the neighbours of the vertex matter.
+// Only corners at the neighbours of the vertex matter of the faces further out.
 void PlainNeighborhoodGatherer::addIrregularCorners(Index face, int local, bool isRing,
                                                     PlainNeighborhood &result) const {
     if (_level.irregularCorners.empty() && _level.quadCorners.empty()) {

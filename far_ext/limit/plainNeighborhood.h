@@ -10,7 +10,7 @@
 
 namespace OpenSubdivHex::FarExt::internal {
 
-/// \brief What the limit at a vertex depends on, where no feature is near: LimitPatch in short.
+/// \brief The neighbourhood that determines the limit at a vertex without features: a short LimitPatch.
 ///
 /// The sources are those of the patch, in the same order, and patches of the same key have the same
 /// limit mask.  So the mask of a key is found from the patch of one vertex that has it.
@@ -19,7 +19,7 @@ struct PlainNeighborhood {
     std::string key;
 };
 
-/// \brief What there is at a vertex, or in the faces around it.
+/// \brief The features at a vertex, or in the faces around it.
 enum class VertexMark : unsigned char {
     Plain,
     Irregular, ///< irregular corners alone
@@ -52,7 +52,7 @@ public:
     ///          result is of no use
     bool Gather(Index vert, PlainNeighborhood &result);
 
-    /// \brief The same of a face: the faces around its vertices and around their neighbours.  Its vertices
+    /// \brief The neighbourhood of a face: the faces around its vertices and around their neighbours.  Its vertices
     /// are the first sources, in their order.
     ///
     /// The key tells, too, of which of its vertices the face is the first one.

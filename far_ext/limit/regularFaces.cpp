@@ -18,7 +18,7 @@ namespace {
 constexpr int kSize = kRegularFaceSize;
 constexpr unsigned kAllCorners = (1u << kSize) - 1;
 
-// Of its own vertices a face gives the limit for as many at least: fewer are made as fast one by one.
+// Least number of own vertices for which a face gives the limit: fewer are made as fast one by one.
 constexpr int kMinOwnVertices = 3;
 
 // Marks of vertices, which several threads set.
@@ -221,7 +221,7 @@ RegularFaces::RegularFaces(MeshLevels const &mesh, int level, std::vector<unsign
     listOthers();
 }
 
-// Those of a level that make anything, unless there is no sample of them.
+// Sets the faces of a level that give any limit, unless there is no sample of them.
 void RegularFaces::setFaces(int level, std::vector<RegularFace> faces, Index firstVertex,
                             Set &set) const {
     set.firstVertex = firstVertex;

@@ -25,7 +25,7 @@ constexpr int kRegularFaceSize = HexIndexing::kNumEFaceCorners;
 /// Where only some of its vertices are regular, the others have an outer neighbour perhaps, but no face
 /// beyond: there it is the face itself.
 struct RegularFace {
-    /// Of the face beyond a corner, the vertices that are in no other face around.
+    /// Vertices of the face beyond a corner that are in no other face around.
     static constexpr int kNumOthers = 3;
 
     bool HasCorner(int corner) const { return (corners >> corner & 1) != 0; }

@@ -77,7 +77,7 @@ public:
     PatchRows(MeshLevels const &mesh, HexSchemeOptions const &schemeOptions, int level, int last,
               Index const *sources, int numSources);
 
-    /// That of a limit row of level \c last; nothing where it depends on other vertices.
+    /// The row in terms of an earlier level; nothing if it depends on other vertices.
     PatchWeights Find(LimitRow const &ofLimit);
 
 private:

@@ -22,7 +22,7 @@ struct LocalPoints {
     std::vector<double> doubleWeights;
 };
 
-/// \brief What a Far::PatchTable of Gregory patches consists of.
+/// \brief The parts of a Far::PatchTable of Gregory patches.
 struct PatchTableContent {
     bool isDouble = false;     ///< the weights of points
     bool isFVarDouble = false; ///< those of face-varying points

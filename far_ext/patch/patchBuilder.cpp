@@ -29,7 +29,7 @@ namespace {
 // The masks that patches have in common, each once.
 class MaskCache {
 public:
-    // What a mask was made from.
+    // Key of a mask.
     class Key {
     public:
         Key &operator<<(double number) {
@@ -105,7 +105,7 @@ private:
     // An edge or a diagonal.
     struct CurvePoints {
         Index points[2] = {Far::INDEX_INVALID, Far::INDEX_INVALID}; // beside its two vertices
-        // Of the patch on each side, in the order of the side.
+        // Points of the patch on each side, in the order of the side.
         Index inner[2] = {Far::INDEX_INVALID, Far::INDEX_INVALID};
         // Of the sides of faces with kites: the five points of the halves, and whose order they have.
         Index halves = Far::INDEX_INVALID;
@@ -113,7 +113,7 @@ private:
         Index rowOfM = Far::INDEX_INVALID; // of side 0, or of both if it is not sharp
         Index secondRowOfM = Far::INDEX_INVALID;
     };
-    // What the middle of a curve, or the centre of a face, is a limit of.
+    // Sources of the middle of a curve, or of the centre of a face.
     struct CenterRow {
         enum Kind { kEdge, kEdgeSide, kDiagonal, kDiagonalSide, kCenter } kind;
         Index index;
@@ -241,7 +241,7 @@ private:
     std::optional<CellFrames> _frames;
 
     std::vector<Index> _verts;
-    // What constants depend on, by vertex.
+    // Arguments of constants, by vertex.
     struct VertexCode {
         std::uint8_t code;
         bool isBesideOther;

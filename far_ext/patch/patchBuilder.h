@@ -60,7 +60,7 @@ public:
     std::vector<Index> const &GetPatchPoints() const { return _patchPoints; }
     Index GetNumPoints() const { return _numPoints; }
 
-    /// Of all points; TooLarge where there are too many weights.
+    /// Stencils of all points; TooLarge if there are too many weights.
     template <typename REAL>
     CallStatus MakeStencils(PointStencils<REAL> &stencils) const;
 

@@ -173,7 +173,7 @@ PatchCells::PatchCells(FVarChannel const &channel, MeshLevels const &mesh, Patch
     }
 }
 
-// Those that exist, but for holes.
+// Cells that exist, except holes.
 void PatchCells::addCells(MeshLevels const &mesh, int level, Marks existing) {
     Level const &topology = mesh.levels[std::size_t(level)];
     std::vector<PatchCell> cells;

@@ -34,7 +34,7 @@ public:
     PatchCells(MeshLevels const &mesh, int level);
     /// One cell of a level.
     PatchCells(MeshLevels const &mesh, int level, PatchCell cell);
-    /// Those of some of its faces.
+    /// Cells of some of its faces.
     PatchCells(MeshLevels const &mesh, int level, std::vector<Index> const &faces);
 
     /// Which faces are to be refined: those for which this is called, of one level at a time; it returns a
@@ -52,7 +52,7 @@ public:
 
     int GetFirstLevel() const { return _firstLevel; }
     int GetLastLevel() const { return _firstLevel + int(_cells.size()) - 1; }
-    /// Those of a level, by ascending face and half.
+    /// Cells of a level, by ascending face and half.
     std::vector<PatchCell> const &GetCells(int level) const {
         return _cells[std::size_t(level - _firstLevel)];
     }

@@ -5,6 +5,7 @@
 #include "patchDeviation.h"
 
 #include "far_ext/limit/limitRows.h"
+#include "far_ext/vtr/report.h"
 
 #include <algorithm>
 #include <cmath>

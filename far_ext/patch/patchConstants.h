@@ -2,7 +2,7 @@
 #ifndef OPENSUBDIVHEX_FAR_EXT_PATCH_PATCH_CONSTANTS_H
 #define OPENSUBDIVHEX_FAR_EXT_PATCH_PATCH_CONSTANTS_H
 
-#include "far_ext/mask.h"
+#include "far_ext/rules/mask.h"
 
 #include <array>
 #include <cstddef>
@@ -23,7 +23,7 @@ enum class PatchQuantity : std::uint8_t {
     DiagonalShare
 };
 
-/// \brief What a constant depends on.
+/// \brief Key of a constant.
 struct PatchSite {
     /// The line from the middle of a side to the centre of a face with kites is a spoke.
     enum Kind : std::uint8_t { kEdge, kDiagonal, kLongBoundary, kSharpEdge, kVertex, kSpoke };
@@ -81,7 +81,7 @@ public:
     /// Has Get() add to \p sites whatever it is asked for, by one thread.
     void Record(std::vector<PatchSite> *sites) { _sites = sites; }
 
-    /// What a site without a constant of its own has.
+    /// Default of sites without their own constant.
     static double GetDefault(PatchSite const &site);
     /// Whether any vertex has shares.
     bool HasShares() const { return _hasShares; }

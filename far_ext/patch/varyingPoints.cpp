@@ -93,7 +93,7 @@ CallStatus VaryingPoints::MakeStencils(PointStencils<REAL> &stencils) const {
     if (!table) {
         return status;
     }
-    // Of level 0 the table has the values of the user.
+    // In level 0 the table has the values of the user.
     auto const getRow = [&](Index vert) {
         return _channel < 0 || _lastLevel > 0
                    ? vert

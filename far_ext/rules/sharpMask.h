@@ -59,9 +59,9 @@ inline constexpr OneFaceMask kOneFaceMask = {
 /// New points have the second moment 2/9 along the line, as all have in a regular mesh of triangles.
 /// @{
 
-/// Of W in T = (2 V + W)/3, the point beside V on the sharp edge to W.
+/// Weight of W in T = (2 V + W)/3, the point beside V on the sharp edge to W.
 inline constexpr double kTruncateAlongEdge = 1.0 / 3;
-/// Of each neighbor in V' = (7 V + V_l + V_r)/9.
+/// Weight of each neighbor in V' = (7 V + V_l + V_r)/9.
 inline constexpr double kTruncateAlongCrease = 1.0 / 9;
 /// Of each neighbor along the line, for what the mean of the centroids around V would bring on both sides of it:
 /// (V_l + V_r - 2 V)/6.

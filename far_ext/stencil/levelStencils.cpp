@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kOne = 1;
 
-// That of a table which stores no level.
+// The plan of a table that stores no level.
 StencilPlan makePlan(Hierarchy const &hierarchy, HexSchemeOptions const &schemeOptions,
                      int lastLevel, int channel) {
     StencilPlan plan = {hierarchy, schemeOptions};
@@ -57,7 +57,7 @@ CallStatus LevelStencils::Form() {
     return CallStatus();
 }
 
-// Those of control vertices are nowhere else.
+// Stencils of control vertices are stored nowhere else.
 void LevelStencils::addLevel(int level) {
     RowSupports const &supports =
         level == 0 ? _symbolic.GetParentSupports(1) : _symbolic.GetSupports(level);

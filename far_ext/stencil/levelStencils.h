@@ -30,7 +30,7 @@ public:
     /// The number of a level's first stencil: those of all vertices are in turn, from the control
     /// vertices on.
     Index GetFirst(int level) const { return _firsts[std::size_t(level)]; }
-    /// Of a vertex that is needed.
+    /// The stencil of a vertex that is needed.
     Stencil const &Get(Index number) const { return _stencils[std::size_t(number)]; }
 
 private:

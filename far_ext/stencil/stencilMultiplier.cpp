@@ -46,7 +46,7 @@ struct CirculantWeights {
     double weights[SIZE];
 };
 
-// Those of a dense rule.
+// The weights of a dense rule.
 template <int SIZE>
 struct DenseWeights {
     explicit DenseWeights(FaceRule const &rule) {

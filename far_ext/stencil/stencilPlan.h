@@ -3,7 +3,7 @@
 #define OPENSUBDIVHEX_FAR_EXT_STENCIL_STENCIL_PLAN_H
 
 #include "far_ext/hexSchemeOptions.h"
-#include "far_ext/mask.h"
+#include "far_ext/rules/mask.h"
 #include "far_ext/vtr/hierarchy.h"
 
 #include <vector>
@@ -20,13 +20,13 @@ struct StencilPlan {
     Refinement const &GetRefinement(int level) const {
         return hierarchy.GetMesh(channel).refinements[level - 1];
     }
-    /// What a stencil is made for, and what stencils refer to.
+    /// Number of vertices of a level, or of control points: what stencils are made for, and refer to.
     Index GetNumVertices(int level) const {
         return level == 0 ? hierarchy.GetNumControlPoints(channel) : GetLevel(level).numVertices;
     }
     /// What vertices of a level stand for as sources; of values, those that the user has.
     std::vector<Index> GetSources(int level, std::vector<Index> verts) const;
-    /// The same of all vertices.
+    /// Overload for all vertices.
     std::vector<Index> GetSources(int level) const;
     /// How many sources the stencils of a level have to choose from.
     Index GetNumSources(int level) const { return GetNumVertices(factorize ? 0 : level - 1); }
@@ -35,7 +35,7 @@ struct StencilPlan {
     bool HasParentStencils(int level) const { return factorize && level > firstBuilt; }
 
     Hierarchy const &hierarchy;
-    HexSchemeOptions schemeOptions;
+    HexSchemeOptions hexSchemeOptions;
     int channel = -1; ///< face-varying channel, or -1
     Interpolation interpolation = Interpolation::Vertex;
     bool factorize = true;

@@ -105,7 +105,7 @@ std::vector<RefinementRows::Part> findParts(StencilPlan const &plan,
     int level = plan.lastLevel;
     for (; level > 0 && !isWhole(level); --level) {
         RefinementRows::Part &part = parts[level - 1];
-        part = FindPart(plan.GetRefinement(level), plan.schemeOptions, plan.interpolation,
+        part = FindPart(plan.GetRefinement(level), plan.hexSchemeOptions, plan.interpolation,
                         wanted[level]);
         std::vector<Index> &pVerts = wanted[level - 1];
         pVerts.insert(pVerts.end(), part.verts.begin(), part.verts.end());

@@ -17,7 +17,7 @@ struct FacePart {
 };
 inline constexpr unsigned kAllHalves = 3;
 
-/// \brief Of levels 0 ... \p lastLevel, what lies in one of \p baseFaces, in ascending order.
+/// \brief The faces of levels 0 ... \p lastLevel that lie in one of \p baseFaces, in ascending order.
 ///
 /// The work is proportional to its amount, but for logarithms.
 std::vector<std::vector<FacePart>>
@@ -42,7 +42,7 @@ struct StencilSelection {
                      bool hasWholes = false);
 
     int wholeLevel; ///< the last that is taken whole, or -1
-    /// Of the refinements that make levels 1, 2 ...; empty up to that of the whole level.
+    /// Parts of the refinements that make levels 1, 2 ...; empty up to that of the whole level.
     std::vector<RefinementRows::Part> parts;
     std::vector<Far::Index> sources; ///< of parts[0].verts, as numbers in indices
     std::vector<Far::Index> indices; ///< ascending; what the stencils refer to

@@ -39,7 +39,7 @@ class SupportArena {
 public:
     using Index = Far::Index;
 
-    /// What one thread adds with.
+    /// Scratch memory of one thread.
     class Writer {
     public:
         explicit Writer(SupportArena &arena) : _arena(arena) {}
@@ -91,10 +91,10 @@ class RowSupports {
 public:
     using Index = Far::Index;
 
-    /// Of rows that are their own sources, or sources[row].
+    /// Supports of rows that are their own sources, or sources[row].
     static RowSupports MakeSources(std::vector<Index> const &sources);
 
-    /// \brief Of rows whose sources have the stencils \p parents, which it refers to.
+    /// \brief Supports of rows whose sources have the stencils \p parents, which it refers to.
     ///
     /// \param before         the rows that made the parent level, null when its vertices are sources
     /// \param keepsVertices  whether stencils of the next level are to be made of these
@@ -109,9 +109,9 @@ public:
     static constexpr std::int64_t kMaxNumWeights = std::numeric_limits<Index>::max();
 
     std::vector<Support> const &OfFaces() const { return _ofFaces; }
-    /// Of all rows; with keepsVertices.
+    /// Supports of all rows; with keepsVertices.
     std::vector<Support> const &OfVertices() const { return _ofVertices; }
-    /// Of a V-vertex; valid until \p scratch is used again.
+    /// The support of a V-vertex; valid until \p scratch is used again.
     Support OfVVertex(Index vVertex, Buffer<Index> &scratch) const;
 
     /// The length of parallel ranges of faces and V-vertices: their stencils take some hundred

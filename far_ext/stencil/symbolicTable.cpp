@@ -25,7 +25,7 @@ CallStatus checkCount(int level, std::int64_t count, char const *name) {
 SymbolicTable::SymbolicTable(StencilPlan const &plan) : _plan(plan) {
     _sources.resize(plan.factorize ? 1 : plan.lastLevel - plan.firstBuilt + 1);
     for (int level = plan.firstBuilt; level <= plan.lastLevel; ++level) {
-        _rows.emplace_back(plan.GetRefinement(level), plan.schemeOptions, plan.interpolation);
+        _rows.emplace_back(plan.GetRefinement(level), plan.hexSchemeOptions, plan.interpolation);
         if (!plan.HasParentStencils(level)) {
             _sources[level - plan.firstBuilt] = {plan.GetSources(level - 1),
                                                  plan.GetNumSources(level)};
@@ -38,9 +38,10 @@ SymbolicTable::SymbolicTable(StencilPlan const &plan, StencilSelection const &se
     _sources.push_back({selection.sources, Index(selection.indices.size())});
     for (int level = 1; level <= plan.lastLevel; ++level) {
         if (level <= selection.wholeLevel) {
-            _rows.emplace_back(plan.GetRefinement(level), plan.schemeOptions, plan.interpolation);
+            _rows.emplace_back(plan.GetRefinement(level), plan.hexSchemeOptions,
+                               plan.interpolation);
         } else {
-            _rows.emplace_back(plan.GetRefinement(level), plan.schemeOptions, plan.interpolation,
+            _rows.emplace_back(plan.GetRefinement(level), plan.hexSchemeOptions, plan.interpolation,
                                selection.parts[level - 1]);
         }
     }

@@ -15,7 +15,7 @@ public:
     using Index = Far::Index;
 
     explicit SymbolicTable(StencilPlan const &plan);
-    /// Of a part, for a plan that is factorized.
+    /// Overload for a part, for a plan that is factorized.
     SymbolicTable(StencilPlan const &plan, StencilSelection const &selection);
 
     /// Forms all supports, or says what is too large.
@@ -24,7 +24,7 @@ public:
     StencilPlan const &GetPlan() const { return _plan; }
     RefinementRows const &GetRows(int level) const { return _rows[level - _plan.firstBuilt]; }
     RowSupports const &GetSupports(int level) const { return _supports[level - _plan.firstBuilt]; }
-    /// Those of the level before, or the sources.
+    /// The supports of the level before, or of the sources.
     RowSupports const &GetParentSupports(int level) const {
         return _plan.HasParentStencils(level) ? GetSupports(level - 1)
                                               : _sourceSupports[getSourceNumber(level)];
@@ -33,7 +33,7 @@ public:
     std::int64_t GetNumWeights() const { return _numWeights; }
     /// The sizes of the stencils of a level that is stored.
     int const *GetSizes(int level) const;
-    /// Those of all that are stored, behind the control stencils.
+    /// The sizes of all stored stencils behind the control stencils.
     std::vector<int> TakeSizes() { return std::move(_sizes); }
 
 private:

@@ -6,7 +6,7 @@
 
 namespace OpenSubdivHex::FarExt::internal {
 
-/// What places in a face are told by.
+/// Kinds of coordinates in a face.
 enum class CoordsOf {
     Plane,           ///< that of BasePolygon
     Parameterization ///< that of MakeFaceParameterization()
@@ -21,7 +21,7 @@ enum class CoordsOf {
 template <typename REAL>
 bool FindBaseCoords(MeshLevels const &mesh, int baseDepth, int depth, Cell cell, CoordsOf coordsOf,
                     REAL *uv);
-/// That face; INDEX_INVALID where FindBaseCoords() is false.
+/// The face; INDEX_INVALID where FindBaseCoords() is false.
 Far::Index FindBaseFace(MeshLevels const &mesh, int baseDepth, int depth, Cell cell);
 
 } // namespace OpenSubdivHex::FarExt::internal

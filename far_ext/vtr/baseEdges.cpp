@@ -316,7 +316,7 @@ public:
         ParallelForRange(_level.numCorners, [this](Index begin, Index end) { fill(begin, end); });
     }
 
-    // Those at boundaries, ascending.
+    // Edges at boundaries, ascending.
     std::vector<Index> GetBoundaryEdges() const {
         std::vector<Index> result;
         for (std::vector<Index> const &edges : _boundaryEdges) {

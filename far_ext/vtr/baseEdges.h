@@ -28,7 +28,7 @@ struct ApartSide {
 CallStatus BuildLevelOfFaces(BoundaryKind boundary, std::vector<Far::Index> const &repeatedVerts,
                              Level &level, std::vector<Far::Index> &fanned);
 
-/// \brief The same where the base has edges already.
+/// \brief Overload for a base that has edges already.
 ///
 /// \param edges  of the base; those that come apart have any sides
 /// \param sides  of all that come apart

@@ -57,7 +57,7 @@ public:
         }
         return fanned;
     }
-    // The same where faces are in order but at some vertices.
+    // Overload for faces that are in order, except at some vertices.
     std::vector<Index> BuildOrdered(std::vector<Index> const &oddVerts) {
         ParallelForRange(_level.numVertices, [this](Index begin, Index end) {
             VertexBuilder const builder = *this;

@@ -44,7 +44,7 @@ public:
     /// @{
     /// Finds the edges, as Far would.
     CallStatus CompleteTopology();
-    /// \brief The same, if \p base, which has the same faces, has the same edges.
+    /// \brief Takes the edges of \p base, which has the same faces, if they are equal.
     ///
     /// \return  whether it has; else the level has its faces alone, and no vertex twice in any
     bool CompleteTopology(Far::TopologyLevel const &base);

@@ -51,6 +51,15 @@ public:
 
     Pair GetCenter() const { return _center; }
 
+    /// The linear map from the plane, relative to the centre, to a and b in a sector: by row.
+    std::array<Pair, 2> GetSectorMap(int sector) const {
+        Pair const start = GetCorner(sector);
+        Pair const end = GetCorner((sector + 1) % _size);
+        double const determinant = start[0] * end[1] - start[1] * end[0];
+        return {Pair{end[1] / determinant, -end[0] / determinant},
+                Pair{-start[1] / determinant, start[0] / determinant}};
+    }
+
     /// Corner number i, from the centre.
     Pair GetCorner(int i) const {
         if (_size == 3) {
@@ -73,6 +82,46 @@ private:
     double const _radius;
     Pair const _center;
 };
+
+/// What a BasePolygon of a common size says, found once: places are found in it by the million.
+class KnownPolygon {
+public:
+    using Pair = BasePolygon::Pair;
+
+    /// That of \p size vertices; null where this is not common.
+    static KnownPolygon const *Find(int size) {
+        static KnownPolygon const kAll[] = {KnownPolygon(kMinSize), KnownPolygon(4),
+                                            KnownPolygon(5),        KnownPolygon(6),
+                                            KnownPolygon(7),        KnownPolygon(kMaxSize)};
+        return kMinSize <= size && size <= kMaxSize ? &kAll[size - kMinSize] : nullptr;
+    }
+
+    Pair const &GetCenter() const { return _center; }
+    Pair const &GetCorner(int i) const { return _corners[i]; }
+    std::array<Pair, 2> const &GetSectorMap(int sector) const { return _sectorMaps[sector]; }
+
+private:
+    static constexpr int kMinSize = 3;
+    static constexpr int kMaxSize = 8;
+
+    explicit KnownPolygon(int size) : _center(BasePolygon(size).GetCenter()) {
+        for (int i = 0; i < size; ++i) {
+            _corners[i] = BasePolygon(size).GetCorner(i);
+            _sectorMaps[i] = BasePolygon(size).GetSectorMap(i);
+        }
+    }
+
+    Pair _center;
+    Pair _corners[kMaxSize] = {};
+    std::array<Pair, 2> _sectorMaps[kMaxSize] = {};
+};
+
+/// Calls function(polygon) with the KnownPolygon of a size, or else with its BasePolygon.
+template <typename FUNCTION>
+auto UsePolygon(int size, FUNCTION const &function) {
+    KnownPolygon const *const known = KnownPolygon::Find(size);
+    return known ? function(*known) : function(BasePolygon(size));
+}
 
 } // namespace OpenSubdivHex::FarExt::internal
 

@@ -12,7 +12,6 @@
 
 #if defined(__linux__)
 #include <sys/mman.h>
-#include <unistd.h>
 #endif
 
 namespace OpenSubdivHex::FarExt::internal {
@@ -89,18 +88,6 @@ void PrepareArray(void *memory, std::size_t bytes) {
     };
     ForEachRange(numCalls, 1, std::cref(prepare));
 #endif
-}
-
-bool IsResident([[maybe_unused]] void const *memory, [[maybe_unused]] std::size_t bytes) {
-#if defined(__linux__)
-    auto const middle = reinterpret_cast<std::uintptr_t>(memory) + bytes / 2;
-    std::uintptr_t const page = middle - middle % std::uintptr_t(sysconf(_SC_PAGESIZE));
-    unsigned char isResident = 0;
-    if (mincore(reinterpret_cast<void *>(page), 1, &isResident) == 0) {
-        return isResident & 1;
-    }
-#endif
-    return true;
 }
 
 } // namespace OpenSubdivHex::FarExt::internal

@@ -24,11 +24,6 @@ OPENSUBDIVHEX_API void FreeArray(void *memory);
 /// it offers them.  Whoever writes it first need not wait for them then.  Content is kept.
 OPENSUBDIVHEX_API void PrepareArray(void *memory, std::size_t bytes);
 
-/// Whether there are pages behind memory already: false for new memory of a large array, which gets
-/// cleared pages when it is first written.  A guess by a page in the middle; true where the system
-/// does not tell.
-bool IsResident(void const *memory, std::size_t bytes);
-
 /// \brief Resizes an empty vector whose owner writes every element, of a trivial type.
 ///
 /// Its memory is prepared, so that it is not touched in pages of 4 KiB, or by one thread alone,

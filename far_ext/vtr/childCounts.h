@@ -10,7 +10,7 @@
 
 namespace OpenSubdivHex::FarExt::internal {
 
-/// \brief What components of the parent make in a refinement where that differs from one to another.
+/// \brief Counts of children, where they differ between components of the parent.
 ///
 /// ParallelSums() gives what the ranges of components before each range make, and behind them what
 /// all make: so ranges can be taken in parallel.

@@ -5,6 +5,8 @@
 #include "pi.h"
 #include "refinementRows.h"
 
+#include "far_ext/vtr/report.h"
+
 #include <cmath>
 
 namespace OpenSubdivHex::FarExt::internal {

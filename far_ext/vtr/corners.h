@@ -23,7 +23,7 @@ constexpr int kMaxFacesAtOnce = 16;
 
 inline bool IsCorner(Far::Index mate) { return 0 <= mate && mate < kBeginsEdge; }
 
-/// \brief What level 0 is derived from, by corner; not kept.
+/// \brief Input of level 0, by corner; not kept.
 struct Corners {
     Buffer<Far::Index> faces;   ///< by corner; empty where all faces have one size, 3 or 4
     Buffer<Far::Index> ofVerts; ///< those of each vertex, ascending, at the places of vertFirstFace
@@ -32,7 +32,7 @@ struct Corners {
     Buffer<Far::Index> nextVerts;
     Buffer<Far::Index> prevVerts;
     /// By corner, that of the same vertex in the face on the other side of the edge that begins there.
-    /// That face is another one.
+    /// It is always another face.
     Buffer<Far::Index> mates;
     /// Vertices whose faces may have any order, where those of all others have theirs; ascending.
     std::vector<Far::Index> oddVerts;

@@ -15,31 +15,6 @@ Bfr::Parameterization MakeFaceParameterization(int size) {
 
 namespace {
 
-// The plane of a face of a common size: places are found in it by the million.
-class KnownPolygon {
-public:
-    static constexpr int kMaxSize = 8;
-
-    static KnownPolygon const &Get(int size) {
-        static KnownPolygon const kAll[] = {KnownPolygon(5), KnownPolygon(6), KnownPolygon(7),
-                                            KnownPolygon(8)};
-        return kAll[size - 5];
-    }
-
-    Pair const &GetCenter() const { return _center; }
-    Pair const &GetCorner(int i) const { return _corners[i]; }
-
-private:
-    explicit KnownPolygon(int size) : _center(BasePolygon(size).GetCenter()) {
-        for (int i = 0; i < size; ++i) {
-            _corners[i] = BasePolygon(size).GetCorner(i);
-        }
-    }
-
-    Pair _center;
-    Pair _corners[kMaxSize] = {};
-};
-
 // The place in a sub-face, with (s, t) from 0 to 1.
 template <typename POLYGON>
 PlanePlace findInSubFace(POLYGON const &polygon, int size, int subFace, double s, double t) {
@@ -76,9 +51,8 @@ PlanePlace FindInPlane(Bfr::Parameterization const &parameterization, Pair const
         parameterization.ConvertCoordToNormalizedSubFace(nearUv.data(), subUv.data()), size - 1);
     double const s = std::clamp(subUv[0], 0.0, 1.0);
     double const t = std::clamp(subUv[1], 0.0, 1.0);
-    return 5 <= size && size <= KnownPolygon::kMaxSize
-               ? findInSubFace(KnownPolygon::Get(size), size, subFace, s, t)
-               : findInSubFace(BasePolygon(size), size, subFace, s, t);
+    return UsePolygon(
+        size, [&](auto const &polygon) { return findInSubFace(polygon, size, subFace, s, t); });
 }
 
 Pair FindFaceCoords(BasePolygon const &polygon, int sector, SectorPoint point) {

@@ -2,7 +2,6 @@
 #ifndef OPENSUBDIVHEX_FAR_EXT_VTR_HEX_LEVEL_WRITER_H
 #define OPENSUBDIVHEX_FAR_EXT_VTR_HEX_LEVEL_WRITER_H
 
-#include "arrayWriter.h"
 #include "parallel.h"
 #include "refinement.h"
 #include "runs.h"
@@ -60,8 +59,6 @@ private:
     void fillFaces();
     template <bool FULL>
     void fillEFaces(Index begin, Index end, Index numBoundaryBefore);
-    template <bool FULL, typename GET_SIDES>
-    void fillEFaces(Index begin, Index end, Index numBoundaryBefore, GET_SIDES getSides);
     template <bool FULL>
     void fillBoundaryEFace(Index pEdge, Index numBoundaryBefore);
     void fillBoundaries();
@@ -140,26 +137,10 @@ private:
         _c.vertFaceLocals[vertex.face++] = local;
     }
 
-    // ParallelForRange for functions that write arrays.
-    template <typename FUNCTION>
-    static void writeRanges(Index count, FUNCTION function) {
-        ParallelForRange(count, [=](Index begin, Index end) {
-            function(begin, end);
-            FinishCopiesPastCaches();
-        });
-    }
-
-    // Writes count numbers: first, first + increment ...
-    void writeSequence(Index *array, Index count, Index first, Index increment) const {
-        WriteSequence<1>(array, count, _pastCaches, increment,
-                         [=](Index *number) { *number = first; });
-    }
-
     Refinement const &_refinement;
     Level const &_p;
     Level &_c;
     HexIndexing const _indexing;
-    bool const _pastCaches;
 
     std::vector<Index> _openFaces; // have a boundary edge
     std::vector<Index> _openVerts; // on a boundary, or non-manifold

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "hexLevelWriter.h"
 
+#include <array>
+#include <cstring>
 #include <type_traits>
 
 namespace OpenSubdivHex::FarExt::internal {
@@ -10,12 +12,40 @@ namespace {
 using Index = Far::Index;
 using LocalIndex = Far::LocalIndex;
 
-// Bytes of a level above which it is written past the caches: less than most caches have, but they
-// hold its parent as well.  Not on new pages: the system clears them in the caches.
+// Writes two entries by one store, which compilers do not always make of two.
+void writePair(Index *entries, Index first, Index second) {
+    Index const pair[2] = {first, second};
+    std::memcpy(entries, pair, sizeof(pair));
+}
+
+// Writes count groups of SIZE entries to array, from front to back: calls
+// fill(entries, i) for i = 0 ... count - 1, which writes group i to entries.
 //
-// More for levels with all relations, which are read again when they are refined.
-constexpr std::size_t kCacheSizeOfFaces = std::size_t(16) << 20;
-constexpr std::size_t kCacheSizeOfAll = std::size_t(32) << 20;
+// The array overlaps nothing that fill reads.
+template <int SIZE, typename T, typename FUNCTION>
+void writeArray(T *__restrict array, Index count, FUNCTION fill) {
+    for (Index i = 0; i < count; ++i, array += SIZE) {
+        fill(array, i);
+    }
+}
+
+// Writes the same for indices that follow from those of group 0, which fill(entries)
+// writes: from group to group all grow by increment.
+template <int SIZE, typename FUNCTION>
+void writeSequence(Index *array, Index count, Index increment, FUNCTION fill) {
+    std::array<Index, SIZE> first;
+    fill(first.data());
+    writeArray<SIZE>(array, count, [=](Index *entries, Index i) {
+        for (int k = 0; k < SIZE; ++k) {
+            entries[k] = first[k] + increment * i;
+        }
+    });
+}
+
+// Writes count numbers: first, first + increment ...
+void writeSequence(Index *array, Index count, Index first, Index increment) {
+    writeSequence<1>(array, count, increment, [=](Index *number) { *number = first; });
+}
 
 // Which sides of its edges a face is: by how much its F-vertices and edges in the E-face of the
 // edge from a corner to the next come before those of side a, 0 or kEFaceSideShift.
@@ -81,10 +111,7 @@ struct SideCorners {
 } // namespace
 
 HexLevelWriter::HexLevelWriter(Refinement const &refinement, Level &child)
-    : _refinement(refinement), _p(*refinement.parent), _c(child), _indexing(_p.ChildIndexing()),
-      _pastCaches(child.memory.size() >
-                      (child.hasFullTopology ? kCacheSizeOfAll : kCacheSizeOfFaces) &&
-                  IsResident(child.memory.data(), child.memory.size())) {}
+    : _refinement(refinement), _p(*refinement.parent), _c(child), _indexing(_p.ChildIndexing()) {}
 
 void HexLevelWriter::Write() {
     if (!_c.hasFullTopology) {
@@ -95,13 +122,13 @@ void HexLevelWriter::Write() {
     listOpenVertices();
     fillFaces<true>();
     fillBoundaries();
-    writeRanges(_p.numFaces, [this](Index begin, Index end) {
+    ParallelForRange(_p.numFaces, [this](Index begin, Index end) {
         ForEachRun(
             begin, end, _openFaces,
             [this](Index runBegin, Index runEnd, Index) { fillClosedFaces(runBegin, runEnd); },
             [this](Index pFace, Index) { fillOpenFace(pFace); });
     });
-    writeRanges(_p.numVertices, [this](Index begin, Index end) {
+    ParallelForRange(_p.numVertices, [this](Index begin, Index end) {
         ForEachRun(
             begin, end, _openVerts,
             [this](Index runBegin, Index runEnd, Index numOpenBefore) {
@@ -121,7 +148,7 @@ void HexLevelWriter::fillFaces() {
         _c.faceFirstCorner[_indexing.GetFaceChildFace(pFace)] =
             _indexing.GetFaceChildFirstCorner(_p.faceFirstCorner[pFace]);
     });
-    writeRanges(_p.numCorners, [=](Index begin, Index end) {
+    ParallelForRange(_p.numCorners, [=](Index begin, Index end) {
         Index const cCorner = _indexing.GetFaceChildFirstCorner(begin);
         writeSequence(&_c.faceVerts[cCorner], end - begin, _indexing.GetCornerChildVertex(begin),
                       1);
@@ -130,7 +157,7 @@ void HexLevelWriter::fillFaces() {
                           1);
         }
     });
-    writeRanges(_p.numEdges, [this](Index begin, Index end) {
+    ParallelForRange(_p.numEdges, [this](Index begin, Index end) {
         ForEachRun(
             begin, end, _p.boundaryEdges,
             [this](Index runBegin, Index runEnd, Index numBoundaryBefore) {
@@ -146,45 +173,6 @@ void HexLevelWriter::fillFaces() {
 // The E-faces of a run of interior edges.
 template <bool FULL>
 void HexLevelWriter::fillEFaces(Index begin, Index end, Index numBoundaryBefore) {
-    if (!_p.isHexagonal) {
-        fillEFaces<FULL>(begin, end, numBoundaryBefore, [this](Index pEdge) {
-            Index const startA = _p.GetSideCorner(pEdge, 0);
-            Index const startB = _p.GetSideCorner(pEdge, 1);
-            return SideCorners{startA, _p.GetNextCorner(_p.edgeFaces[pEdge][0], startA), startB,
-                               _p.GetNextCorner(_p.edgeFaces[pEdge][1], startB)};
-        });
-        return;
-    }
-    // The edges of F-faces come first: side a is the F-face, from whose corner to the next the edge
-    // has its number and its F-vertices; side b is an E-face.  Then come spokes, with E-faces
-    // alone. Of all these sides in E-faces only side b of a spoke can be the last edge of its face.
-    Index const beginSpokes = std::clamp(_p.numFFaceCorners, begin, end);
-    IndexPair const *const pVerts = _p.edgeVerts.data();
-    IndexPair const *const pFaces = _p.edgeFaces.data();
-    LocalIndexPair const *const pLocals = _p.edgeFaceLocals.data();
-    Index const *const pFirstCorner = _p.faceFirstCorner.data();
-    Index const firstFVertex = _p.numVVertices;
-    fillEFaces<FULL>(begin, beginSpokes, numBoundaryBefore, [=](Index pEdge) {
-        Index const startB = pFirstCorner[pFaces[pEdge][1]] + pLocals[pEdge][1];
-        return SideCorners{pVerts[pEdge][0] - firstFVertex, pVerts[pEdge][1] - firstFVertex, startB,
-                           startB + 1};
-    });
-    fillEFaces<FULL>(beginSpokes, end, numBoundaryBefore, [=](Index pEdge) {
-        Index const startA = pFirstCorner[pFaces[pEdge][0]] + pLocals[pEdge][0];
-        Index const firstB = pFirstCorner[pFaces[pEdge][1]];
-        Index const startB = firstB + pLocals[pEdge][1];
-        return SideCorners{startA, startA + 1, startB,
-                           pLocals[pEdge][1] == kEFaceSideB.startSpoke ? startB + 1 : firstB};
-    });
-}
-
-// getSides(pEdge) tells the corners of an edge's sides.
-template <bool FULL, typename GET_SIDES>
-void HexLevelWriter::fillEFaces(Index begin, Index end, Index numBoundaryBefore,
-                                GET_SIDES getSides) {
-    if (begin == end) {
-        return;
-    }
     HexIndexing const indexing = _indexing;
     Index const cFace = _refinement.GetEdgeChildFace(begin);
     Index const numBBefore = indexing.GetEdgeChildFace(begin, 0) - cFace;
@@ -193,8 +181,15 @@ void HexLevelWriter::fillEFaces(Index begin, Index end, Index numBoundaryBefore,
     constexpr int kSize = HexIndexing::kNumEFaceCorners;
     writeSequence(&_c.faceFirstCorner[cFace], end - begin, cFirst, kSize);
 
+    Level const &parent = _p;
+    auto const getSides = [&parent](Index pEdge) {
+        Index const startA = parent.GetSideCorner(pEdge, 0);
+        Index const startB = parent.GetSideCorner(pEdge, 1);
+        return SideCorners{startA, parent.GetNextCorner(parent.edgeFaces[pEdge][0], startA), startB,
+                           parent.GetNextCorner(parent.edgeFaces[pEdge][1], startB)};
+    };
     IndexPair const *const pVerts = _p.edgeVerts.data();
-    WriteArray<kSize>(&_c.faceVerts[cFirst], end - begin, _pastCaches, [=](Index *verts, Index i) {
+    writeArray<kSize>(&_c.faceVerts[cFirst], end - begin, [=](Index *verts, Index i) {
         SideCorners const sides = getSides(begin + i);
         IndexPair const &ends = pVerts[begin + i];
         // From the first place to the last: stores to one cache line in a row cost less.
@@ -207,7 +202,7 @@ void HexLevelWriter::fillEFaces(Index begin, Index end, Index numBoundaryBefore,
     });
     if constexpr (FULL) {
         Index *const edgesOfRun = &_c.faceEdges[cFirst];
-        WriteArray<kSize>(edgesOfRun, end - begin, _pastCaches, [=](Index *edges, Index i) {
+        writeArray<kSize>(edgesOfRun, end - begin, [=](Index *edges, Index i) {
             SideCorners const sides = getSides(begin + i);
             edges[kEFaceSideA.fFaceEdge] = indexing.GetCornerChildEdge(sides.startA);
             edges[kEFaceSideA.startSpoke] = indexing.GetCornerChildSpoke(sides.startA);
@@ -308,14 +303,14 @@ void HexLevelWriter::fillFacesOfSize(Index begin, Index end, SIDES sides) {
     fillClosedCorners(
         begin, end,
         [=](auto kEntries, auto *array, auto fill) {
-            WriteArray<kEntries * SIZE>(
-                array, end - begin, _pastCaches,
-                [=](auto *entries, Index i) { fillFace(kEntries, entries, i, fill); });
+            writeArray<kEntries * SIZE>(array, end - begin, [=](auto *entries, Index i) {
+                fillFace(kEntries, entries, i, fill);
+            });
         },
         [=](auto kEntries, Index *array, auto fill) {
-            WriteSequence<kEntries * SIZE>(
-                array, end - begin, _pastCaches, SIZE,
-                [=](Index *entries) { fillFace(kEntries, entries, 0, fill); });
+            writeSequence<kEntries * SIZE>(array, end - begin, SIZE, [=](Index *entries) {
+                fillFace(kEntries, entries, 0, fill);
+            });
         });
 }
 
@@ -340,7 +335,7 @@ void HexLevelWriter::fillFacesOfAnySize(Index begin, Index end, SIDES sides) {
         }
     }
     auto const write = [&](auto kEntries, auto *array, auto fill) {
-        WriteArray<kEntries>(array, Index(corners.size()), _pastCaches,
+        writeArray<kEntries>(array, Index(corners.size()),
                              [&](auto *entries, Index i) { fill(entries, corners[i]); });
     };
     fillClosedCorners(begin, end, write, write);
@@ -366,11 +361,11 @@ void HexLevelWriter::fillClosedCorners(Index begin, Index end, WRITE write,
     Index const fEdges = indexing.GetCornerChildEdge(pFirst);
     writeClosedForm(kTwo, _c.edgeVerts[fEdges].data(),
                     [=](Index *verts, ClosedCorner const &corner) {
-                        WritePair(verts, indexing.GetCornerChildVertex(corner.corner),
+                        writePair(verts, indexing.GetCornerChildVertex(corner.corner),
                                   indexing.GetCornerChildVertex(corner.next));
                     });
     write(kTwo, _c.edgeFaces[fEdges].data(), [=](Index *faces, ClosedCorner const &corner) {
-        WritePair(faces, indexing.GetFaceChildFace(corner.face), eFaceOf(pEdges[corner.corner]));
+        writePair(faces, indexing.GetFaceChildFace(corner.face), eFaceOf(pEdges[corner.corner]));
     });
     write(kTwo, _c.edgeFaceLocals[fEdges].data(),
           [](LocalIndex *locals, ClosedCorner const &corner) {
@@ -381,11 +376,11 @@ void HexLevelWriter::fillClosedCorners(Index begin, Index end, WRITE write,
     // Seen from the V-vertex, the E-face of the incoming edge is left of the spoke.
     Index const spokes = indexing.GetCornerChildSpoke(pFirst);
     write(kTwo, _c.edgeVerts[spokes].data(), [=](Index *verts, ClosedCorner const &corner) {
-        WritePair(verts, indexing.GetVertexChildVertex(pVerts[corner.corner]),
+        writePair(verts, indexing.GetVertexChildVertex(pVerts[corner.corner]),
                   indexing.GetCornerChildVertex(corner.corner));
     });
     write(kTwo, _c.edgeFaces[spokes].data(), [=](Index *faces, ClosedCorner const &corner) {
-        WritePair(faces, eFaceOf(pEdges[corner.prev]), eFaceOf(pEdges[corner.corner]));
+        writePair(faces, eFaceOf(pEdges[corner.prev]), eFaceOf(pEdges[corner.corner]));
     });
     write(kTwo, _c.edgeFaceLocals[spokes].data(),
           [](LocalIndex *locals, ClosedCorner const &corner) {
@@ -406,7 +401,7 @@ void HexLevelWriter::fillClosedCorners(Index begin, Index end, WRITE write,
               });
     }
     write(kThree, &_c.vertFaces[vertex.face], [=](Index *faces, ClosedCorner const &corner) {
-        WritePair(faces, indexing.GetFaceChildFace(corner.face), eFaceOf(pEdges[corner.prev]));
+        writePair(faces, indexing.GetFaceChildFace(corner.face), eFaceOf(pEdges[corner.prev]));
         faces[2] = eFaceOf(pEdges[corner.corner]);
     });
     write(kThree, &_c.vertFaceLocals[vertex.face],
@@ -429,11 +424,11 @@ void HexLevelWriter::fillClosedVertices(Index begin, Index end, Index numOpenBef
     Index const cVert = _indexing.GetVertexChildVertex(begin);
     VertexOffsets const shift = _vVertexShifts[numOpenBefore];
     Index const *const pFirstFaces = &_p.vertFirstFace[begin];
-    WriteArray<1>(&_c.vertFirstFace[cVert], end - begin, _pastCaches,
+    writeArray<1>(&_c.vertFirstFace[cVert], end - begin,
                   [=](Index *first, Index i) { *first = pFirstFaces[i] + shift.face; });
     if (!_c.boundaryEdges.empty()) {
         Index const *const pFirstEdges = &_p.vertFirstEdge[begin];
-        WriteArray<1>(&_c.vertFirstEdge[cVert], end - begin, _pastCaches,
+        writeArray<1>(&_c.vertFirstEdge[cVert], end - begin,
                       [=](Index *first, Index i) { *first = pFirstEdges[i] + shift.edge; });
     }
     VertexOffsets const vertex = vVertexOffsets(begin, numOpenBefore);
@@ -450,16 +445,15 @@ void HexLevelWriter::fillClosedVertexEdges(Index begin, Index end, VertexOffsets
     HexIndexing const indexing = _indexing;
     Index const numFaces = _p.vertFirstFace[end] - _p.vertFirstFace[begin];
     if (!_c.boundaryEdges.empty()) {
-        WriteArray<1>(_c.vertEdgeLocals.data() + vertex.edge, numFaces, _pastCaches,
+        writeArray<1>(_c.vertEdgeLocals.data() + vertex.edge, numFaces,
                       [](LocalIndex *local, Index) { *local = kVVertexEdgeLocals[0]; });
     }
     Index const *const pFaces = _p.vertFaces.data() + _p.vertFirstFace[begin];
     LocalIndex const *const pFaceLocals = _p.vertFaceLocals.data() + _p.vertFirstFace[begin];
     Index const *const pFirstCorner = _p.faceFirstCorner.data();
-    WriteArray<1>(
-        _c.vertEdges.data() + vertex.edge, numFaces, _pastCaches, [=](Index *edge, Index i) {
-            *edge = indexing.GetCornerChildSpoke(pFirstCorner[pFaces[i]] + pFaceLocals[i]);
-        });
+    writeArray<1>(_c.vertEdges.data() + vertex.edge, numFaces, [=](Index *edge, Index i) {
+        *edge = indexing.GetCornerChildSpoke(pFirstCorner[pFaces[i]] + pFaceLocals[i]);
+    });
 }
 
 // The E-faces around V-vertices of any valence, from firstPlace on in vertFaces: written as if all were edges
@@ -500,20 +494,20 @@ void HexLevelWriter::fillFacesOfValenceThree(Index begin, Index end, Index first
     constexpr int kValence = 3;
     EFaceOfEdge const eFaceOf(_refinement);
     Index const *const pEdges = _p.vertEdges.data() + _p.vertFirstEdge[begin];
-    WriteArray<kValence>(_c.vertFaces.data() + firstPlace, end - begin, _pastCaches,
+    writeArray<kValence>(_c.vertFaces.data() + firstPlace, end - begin,
                          [=](Index *ofVertex, Index i) {
                              Index const *const edges = pEdges + kValence * std::size_t(i);
-                             WritePair(ofVertex, eFaceOf(edges[1]), eFaceOf(edges[2]));
+                             writePair(ofVertex, eFaceOf(edges[1]), eFaceOf(edges[2]));
                              ofVertex[2] = eFaceOf(edges[0]);
                          });
     Index const endVVertices = _p.isHexagonal ? std::clamp(_p.numVVertices, begin, end) : end;
     Index const numVVertices = endVVertices - begin;
     LocalIndex *const locals = _c.vertFaceLocals.data() + firstPlace;
-    WriteArray<kValence>(locals, numVVertices, _pastCaches, [](LocalIndex *ofVertex, Index) {
+    writeArray<kValence>(locals, numVVertices, [](LocalIndex *ofVertex, Index) {
         ofVertex[0] = ofVertex[1] = ofVertex[2] = kEFaceSideA.startVertex;
     });
-    WriteArray<kValence>(locals + kValence * std::size_t(numVVertices), end - endVVertices,
-                         _pastCaches, [](LocalIndex *ofVertex, Index) {
+    writeArray<kValence>(locals + kValence * std::size_t(numVVertices), end - endVVertices,
+                         [](LocalIndex *ofVertex, Index) {
                              ofVertex[0] = ofVertex[1] = kEFaceSideA.endVertex;
                              ofVertex[2] = kEFaceSideA.startVertex;
                          });

@@ -24,7 +24,7 @@ struct FVarChannel {
     MeshLevels values;
     std::deque<FVarLevel> levels;
 
-    // Of level 0, whose value mesh may have more vertices than there are values: see FVarLevel.
+    // For level 0, whose value mesh may have more vertices than there are values: see FVarLevel.
     Far::Index numValues = 0;            ///< of the user
     Buffer<Far::Index> valuesOfVertices; ///< by vertex of the value mesh
     Buffer<Far::Index> faceValues;       ///< by corner of the mesh
@@ -38,7 +38,7 @@ struct Hierarchy {
     int numLevels = 1;
     int surfaceLevel = 0; ///< HexSchemeOptions::GetSurfaceLevel()
 
-    /// That of the vertices, or the value mesh of a \p channel of 0 or more.
+    /// The mesh of the vertices, or the value mesh of a \p channel of 0 or more.
     MeshLevels const &GetMesh(int channel) const {
         return channel < 0 ? mesh : channels[std::size_t(channel)].values;
     }

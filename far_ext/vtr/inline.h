@@ -2,7 +2,7 @@
 #ifndef OPENSUBDIVHEX_FAR_EXT_VTR_INLINE_H
 #define OPENSUBDIVHEX_FAR_EXT_VTR_INLINE_H
 
-/// Of functions whose values are to stay in registers, whatever the compiler would choose.
+/// For functions whose values must stay in registers, whatever the compiler would choose.
 #if defined(__GNUC__)
 #define OPENSUBDIVHEX_INLINE inline __attribute__((always_inline))
 #else

@@ -3,6 +3,8 @@
 
 #include "parallel.h"
 
+#include "far_ext/vtr/report.h"
+
 #include <cstdio>
 #include <utility>
 

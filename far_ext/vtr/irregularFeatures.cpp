@@ -99,7 +99,7 @@ public:
     }
 
 private:
-    // Of a vertex: the share of its masks, negative of those that are not irregular.
+    // By vertex: the share of its masks, negative if the vertex is not irregular.
     struct Vertex {
         float weight;
         FacesAround facesAround;
@@ -182,7 +182,7 @@ void IrregularFinder::findVertices() {
     }
 }
 
-// What was made of vertices stands in E-faces where their sides start.
+// Marks of vertices stand in E-faces where their sides start.
 void IrregularFinder::markFacesOfVertices() {
     for (IrregularVertex const &irregular : _level.irregularVerts) {
         Index const end = _level.vertFirstFace[irregular.vert + 1];

@@ -4,7 +4,7 @@
 
 #include "refinement.h"
 
-#include "far_ext/mask.h"
+#include "far_ext/rules/mask.h"
 
 namespace OpenSubdivHex::FarExt::internal {
 

@@ -10,7 +10,7 @@ namespace OpenSubdivHex::FarExt::internal {
 template <typename T>
 class Kept {
 public:
-    /// \brief What is kept, or else what \p make() makes: a shared pointer.
+    /// \brief The kept value, or else a new one by \p make(): a shared pointer.
     ///
     /// Several threads may call it at once: of those that they have made, all get the first.
     template <typename MAKE>

@@ -6,7 +6,7 @@
 #include "kept.h"
 
 #include "far_ext/indexing.h"
-#include "far_ext/mask.h"
+#include "far_ext/rules/mask.h"
 #include "far_ext/rules/quadPath.h"
 
 #include <opensubdiv/sdc/crease.h>
@@ -86,7 +86,7 @@ struct IrregularVertex {
 /// \brief A corner of a hexagon whose F-vertex has a mask of its own, since an irregular vertex or a
 /// quad is beside it.
 struct IrregularCorner {
-    /// What is irregular, seen from the corner.
+    /// The irregular parts, seen from the corner.
     enum Kind : std::uint16_t { // without padding in the corner, whose bytes are compared
         kAtVertex,              ///< its vertex
         kBehindVertex,          ///< the vertex before it in the face
@@ -208,7 +208,7 @@ struct Level {
         return face < 0 ? face : faceFirstCorner[face] + edgeFaceLocals[e][side];
     }
 
-    /// Of the edge that begins at a corner, and is no boundary, the other side: where that begins.
+    /// The corner at which the other side begins, of an interior edge that begins at a corner.
     FaceCorner GetCornerAcross(Index corner) const {
         Index const edge = faceEdges[corner];
         int const side = GetSideCorner(edge, 0) == corner ? 1 : 0;
@@ -369,7 +369,7 @@ struct Level {
     Index numSharpBoundariesA = 0;
     Index numSharpBoundariesB = 0;
 
-    // What the numbering tells of how a refined level was made.
+    // Origin of a refined level, as the numbering has it.
     bool isHexagonal = false;  ///< by a hexagonal refinement, whose E-faces' sides are known
     int numHexagonalSteps = 0; ///< that made it, behind the last step of another scheme
     Index numVVertices = 0;    ///< the first vertices, made of vertices; F-vertices follow
@@ -384,7 +384,7 @@ struct Level {
     bool hasFullTopology = false;
 
     Buffer<std::byte> memory; ///< of the relations that a hexagonal refinement makes
-    /// Of those that are derived from faces: of corners and vertices, and of edges.
+    /// Relations that are derived from faces: of corners and vertices, and of edges.
     Buffer<std::byte> cornerMemory;
     Buffer<std::byte> edgeMemory;
 
@@ -419,10 +419,10 @@ struct Level {
 
     std::vector<SharpVertex> sharpVerts;     ///< ascending; all with a rule but RULE_SMOOTH
     std::vector<SectorCorner> sectorCorners; ///< ascending; of a corner by kind
-    /// Of patches alone; vertices ascend, and edges are in the order around them.
+    /// Only in patches; vertices ascend, and edges are in the order around them.
     std::vector<SharpEnd> sharpEnds;
 
-    // What has masks of its own with FaceMask::Smooth; empty with others.
+    // Components with masks of their own with FaceMask::Smooth; empty with other masks.
     std::vector<IrregularVertex> irregularVerts;   ///< ascending
     std::vector<IrregularCorner> irregularCorners; ///< ascending; one for a corner at most
     std::vector<QuadCorner> quadCorners;           ///< ascending

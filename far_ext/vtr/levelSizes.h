@@ -36,7 +36,7 @@ struct ExpectedSizes {
     /// Goes on to the child.  Exact where the level is closed, and for Hexagonal and DooSabin;
     /// with borders TriHex may make fewer.  Truncate makes more where it cuts polygons.
     void Refine(StepType step);
-    /// The same for refinement by coplanar faces: the least, whichever edges are flat.
+    /// Lower bound for refinement by coplanar faces, whichever edges are flat.
     void RefineToLeast(bool closeGaps);
 
     LevelSizes sizes;

@@ -33,7 +33,7 @@ public:
 
     /// \brief Before each piece of work: gives pages free for other indices where there are many.
     ///
-    /// What was in them is what new elements have then.
+    /// New elements keep the former content of their memory.
     void Begin() {
         if (_places.size() > kMaxPages) {
             free();

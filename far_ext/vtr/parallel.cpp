@@ -2,7 +2,6 @@
 #include "parallel.h"
 
 #include "far_ext/executor.h"
-#include "far_ext/threads.h"
 
 #include <algorithm>
 #include <cstdint>

@@ -106,7 +106,7 @@ void ParallelForRange(Far::Index count, MAKE_STATE makeState, FUNCTION function,
         if (!queue.Take(worker, &range)) {
             return; // before a state is made
         }
-        // What a call has thrown out of may have left its state in pieces.
+        // A call that throws may leave its state incomplete.
         exceptions.Run([&] {
             auto state = makeState();
             do {

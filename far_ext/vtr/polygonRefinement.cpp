@@ -28,7 +28,7 @@ namespace {
 // The first of the two ends of an edge, as a position in _endEdges.
 std::size_t getFirstEnd(Index pEdge) { return 2 * std::size_t(pEdge); }
 
-// What _endEdges holds before edges are numbered.
+// Entries of _endEdges before edges are numbered.
 constexpr Index kNoEndEdge = Far::INDEX_INVALID;
 constexpr Index kEndEdge = 0;
 constexpr Index kJoinedEnd = -2; // stays; the edge is that of the digon's other end
@@ -452,7 +452,7 @@ void PolygonRefiner::Builder<FULL>::fillVFace(Index pVert, VFace const &vFace, N
         Index const last = cornerAt(vFace.count - 1);
         addCorner(place, fVertex(last), spoke(last, kSecond));
     } else if (_refiner.isTriHex()) {
-        // Of each face the F-vertices of two corners, and the edge of the F-face between them.
+        // For each face the F-vertices of two corners, and the edge of the F-face between them.
         auto const cornerBefore = [&](Index i) {
             return _p.GetPrevCorner(_p.vertFaces[vFace.GetPosition(i)], cornerAt(i));
         };

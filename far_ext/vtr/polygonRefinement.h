@@ -15,16 +15,16 @@ struct PolygonRules {
     /// Of Truncate, by face of level 0: faces with other labels are kept apart.  Empty when all have
     /// the same.
     Far::ConstIndexArray faceLabels;
-    /// Of Hexagonal, by edge: whether an interior edge makes a quad, of its F-vertices alone.
+    /// For Hexagonal, by edge: whether an interior edge makes a quad of its F-vertices.
     /// Empty when none does.
     std::vector<unsigned char> flatEdges;
-    /// Of Hexagonal: whether faces at the vertices close the gaps that quads leave.
+    /// For Hexagonal: whether faces at the vertices close the gaps that quads leave.
     bool closeGaps = true;
 };
 
 struct FVarLevel;
 
-/// The same rules for the value mesh of a channel of \p mesh; no seam is among the flat edges.
+/// Rules for the value mesh of a channel of \p mesh; no seam is among the flat edges.
 PolygonRules GetRulesOfChannel(Level const &mesh, PolygonRules const &rules,
                                FVarLevel const &channel);
 
@@ -76,7 +76,7 @@ private:
     bool makesEFace(Index pEdge) const;
     bool makesVVertex(Index pVert) const;
     std::size_t findEnd(Index startCorner) const;
-    /// Of edges that have no such parent.
+    /// The kind of edges without such a parent.
     BoundaryKind getBoundaryKind() const;
 
     template <typename ADD_VFACE, typename ADD_DIGON>
@@ -100,7 +100,7 @@ private:
     TagOptions const _tagOptions;
     LevelSizes _sizes{};
 
-    // What the ranges of components before a range make, by range.
+    // By range, the counts that the components before the range make.
     std::vector<ChildCounts> _vertexCounts; ///< V-vertices, V-faces and digons
     std::vector<ChildCounts> _edgeCounts;   ///< edges of _endEdges, E-faces
     std::vector<ChildCounts> _spokeCounts;  ///< spokes, by range of faces

@@ -4,7 +4,7 @@
 
 #include "levelSizes.h"
 
-#include "far_ext/mask.h"
+#include "far_ext/rules/mask.h"
 
 #include <opensubdiv/sdc/options.h>
 
@@ -108,7 +108,7 @@ struct Refinement {
 void BeginRefinement(Level const &parent, LevelSizes const &sizes, bool fullTopology,
                      Refinement &refinement, Level &child);
 
-/// What the tags of levels depend on.
+/// Options that determine the tags of levels.
 struct TagOptions {
     Sdc::Options sdcOptions;
     FaceMask faceMask;

@@ -167,7 +167,7 @@ void InterpolateFaces(RefinementRows const &rows, Far::Index begin, Far::Index e
     }
 }
 
-/// The same for V-vertices [begin, end), whose F-vertices are there.
+/// Overload for V-vertices [begin, end), whose F-vertices are made already.
 template <typename REAL, class SRC, class DST>
 void InterpolateVVertices(RefinementRows const &rows, Far::Index begin, Far::Index end,
                           SRC const &src, DST &dst) {
@@ -185,7 +185,7 @@ void InterpolateVVertices(RefinementRows const &rows, Far::Index begin, Far::Ind
     }
 }
 
-/// The same for all rows.
+/// Overload for all rows.
 template <typename REAL, class SRC, class DST>
 void Interpolate(RefinementRows const &rows, SRC const &src, DST &dst) {
     InterpolateFaces<REAL>(rows, 0, rows.GetNumFaces(), src, dst);

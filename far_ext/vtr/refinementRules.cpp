@@ -46,7 +46,7 @@ private:
     std::unordered_map<int, IrregularVertexMask> _masks;
 };
 
-// What the rule of a face depends on.  Equal ones have equal rules.
+// Key of the rule of a face: equal keys have equal rules.
 struct FaceTags {
     Index firstCorner;
     int size;
@@ -376,7 +376,7 @@ private:
     Index _endRead = 0;  // behind the last face whose tags were read
 };
 
-// Those with anything but irregular corners, ascending.
+// Faces with other features than irregular corners, ascending.
 std::vector<Index> RefinementRules::DenseRuleMaker::findSharpFaces() const {
     std::vector<Index> faces(_level.halfFaces.begin(), _level.halfFaces.end());
     if (!_isVertex) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sharpFeatures.h"
 
-#include "far_ext/mask.h"
+#include "far_ext/rules/mask.h"
 #include "far_ext/rules/sharpMask.h"
 #include "indexSet.h"
 #include "parallel.h"
@@ -267,7 +267,7 @@ public:
         : _level(level), _faceMask(options.faceMask), _creasing(options.sdcOptions),
           _hasOneFaceMasks(_faceMask == FaceMask::Smooth && level.numHexagonalSteps > 0) {}
 
-    // That of a vertex that may need a rule of its own.
+    // The features of a vertex that may need a rule of its own.
     SharpVertex Find(Index vert);
     // Adds the corners of wide sectors, and of those of one face, at the vertex that was found last.
     void AddSectorCorners(Index vert, std::vector<SectorCorner> &result);
@@ -279,7 +279,7 @@ private:
     FaceMask const _faceMask;
     Crease const _creasing;
     bool const _hasOneFaceMasks;
-    // What is found at a vertex, in memory that stays.
+    // Results at a vertex, in memory that is used again.
     FanItems _fan;
     SharpEdges _edges;
     std::vector<float> _childSharpness;
@@ -325,7 +325,7 @@ void SharpMaskFinder::AddSectorCorners(Index vert, std::vector<SectorCorner> &re
     if (!_hasOneFaceMasks && _level.GetNumVertexFaces(vert) < kMinShrunkSector) {
         return;
     }
-    // Of each fan, since a sector may lie between two ends of a fan on the same line.
+    // For each fan, because a sector may lie between two ends of a fan on the same line.
     _layers.clear();
     ForEachFanItems(_level, vert, _fan, [this](FanItems const &fan) {
         for (FanItem const &item : fan.items) {
@@ -409,7 +409,7 @@ public:
     SharpnessRefiner(Level const &level, Sdc::Options sdcOptions)
         : _level(level), _creasing(sdcOptions) {}
 
-    // Of a part of the edge that ends in the vertex.
+    // Sharpness of a part of the edge that ends in the vertex.
     float AtVertex(float sharpness, Index vert) const {
         if (_creasing.IsUniform()) {
             return Along(sharpness);
@@ -418,9 +418,9 @@ public:
         return _creasing.SubdivideEdgeSharpnessAtVertex(sharpness, int(ofEdges.size()),
                                                         ofEdges.data());
     }
-    // Of a part of the edge that ends in neither vertex.
+    // Sharpness of a part of the edge that ends in neither vertex.
     float Along(float sharpness) const { return _creasing.SubdivideUniformSharpness(sharpness); }
-    // Of the whole edge: the mean of both ends.
+    // Sharpness of the whole edge: the mean of both ends.
     float Between(float sharpness, Index vert0, Index vert1) const {
         if (Crease::IsInfinite(sharpness)) {
             return sharpness;
@@ -487,7 +487,7 @@ Index findSpoke(Refinement const &refinement, Index pVert, Index fVertex, Level 
     return Far::INDEX_INVALID;
 }
 
-// That to the F-vertex of a corner.
+// The spoke to the F-vertex of a corner.
 Index findSpoke(Refinement const &refinement, Index corner, Level const &child) {
     return findSpoke(refinement, refinement.parent->faceVerts[corner],
                      refinement.GetCornerChildVertex(corner), child);

@@ -17,7 +17,7 @@ namespace OpenSubdivHex::FarExt::internal {
 void RefineTags(Refinement const &refinement, Sdc::Options sdcOptions, Level &child);
 
 /// \brief The sharpness of all sharp edges that meet in a vertex: boundaries, crease edges and crease diagonals.
-/// Those that several fans have on one line count once.
+/// Edges of several fans on one line count once.
 std::vector<float> GatherSharpness(Level const &level, Far::Index vert);
 
 /// \brief Fills level.sharpVerts and level.sectorCorners from the level's boundaries and tags, with

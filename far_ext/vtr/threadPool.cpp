@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "threadPool.h"
-
-#include "far_ext/threads.h"
+#include "far_ext/executor.h"
 
 #include <algorithm>
 #include <atomic>
@@ -24,7 +22,9 @@
 #include <pthread.h>
 #endif
 
-namespace OpenSubdivHex::FarExt::internal {
+namespace OpenSubdivHex::FarExt {
+
+namespace internal {
 
 namespace {
 
@@ -80,7 +80,7 @@ int getProcessor() {
 #endif
 }
 
-// \brief What the help of workers has gained and cost.  On a busy machine a worker may lose its
+// \brief Account of the gain and cost of workers' help.  On a busy machine a worker may lose its
 // processor in the middle of a call, and the caller of the loop has to wait for it, as long as many
 // a loop takes.
 //
@@ -266,7 +266,7 @@ private:
         }
     }
 
-    // What a worker does as long as it lives.
+    // The loop of a worker.
     void work() {
         Lock lock(_mutex);
         while (!_isClosed) {
@@ -319,7 +319,7 @@ private:
         *findLink(&loop) = loop.next;
         --_numLoops;
     }
-    // What points to a loop of the list; null is the end.
+    // Pointer to a loop of the list; null is the end.
     Loop **findLink(Loop const *loop) {
         Loop **link = &_firstLoop;
         while (*link != loop) {
@@ -343,6 +343,8 @@ private:
 
 } // namespace
 
-Executor &GetThreadPool() { return ThreadPool::Get(); }
+} // namespace internal
 
-} // namespace OpenSubdivHex::FarExt::internal
+Executor &GetDefaultExecutor() { return internal::ThreadPool::Get(); }
+
+} // namespace OpenSubdivHex::FarExt

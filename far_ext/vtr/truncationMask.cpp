@@ -96,7 +96,7 @@ void TruncationMask::addCentroids(Index vert, Index corner, TruncateMask const &
     Index const beside[] = {corner, _parent.GetNextCorner(across.face, across.corner)};
     Index const first = _parent.vertFirstFace[vert];
     int const numFaces = _parent.GetNumVertexFaces(vert);
-    // Of each corner of a face at the vertex.
+    // For each corner of a face at the vertex.
     auto const getWeight = [&](FaceCorner const &at) {
         bool const isBeside = at.corner == beside[0] || at.corner == beside[1];
         return (mask.aroundWeight / numFaces + (isBeside ? mask.besideWeight : 0)) /

@@ -34,7 +34,7 @@ class OPENSUBDIVHEX_API TruncationMask {
 public:
     using Index = Far::Index;
 
-    /// What a vertex is made of; a vertex may stand among the sources several times.
+    /// Sources of a vertex; one source may occur several times.
     struct Sources {
         std::vector<Index> verts;
         std::vector<double> weights;

@@ -21,7 +21,7 @@ using EndCuts = std::vector<unsigned char>;
 /// is one with two faces, whose polygon would have two vertices.
 EndCuts FindEndCuts(Hierarchy const &base, Far::ConstIndexArray labels);
 
-/// The same cuts for the value mesh of a channel of \p mesh, both of level 0.
+/// Cuts for the value mesh of a channel of \p mesh, both of level 0.
 EndCuts GetEndCutsOfChannel(Level const &mesh, EndCuts const &cuts, FVarLevel const &channel);
 
 /// \brief Makes the refinement of FirstStep::Truncate.
@@ -56,7 +56,7 @@ private:
     EndCuts const _cuts;
     TagOptions const _tagOptions;
     LevelSizes _sizes{};
-    // What the ranges of components before a range make, by range.
+    // By range, the counts that the components before the range make.
     std::vector<ChildCounts> _vertexCounts; ///< V-vertices and V-faces
     std::vector<ChildCounts> _edgeCounts;   ///< spokes
 };

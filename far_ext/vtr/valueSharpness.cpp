@@ -153,7 +153,7 @@ void VertexValues::findSpans() {
     }
 }
 
-// What lies between the faces of the spans.  A single span all around begins at a seam.
+// Separators of the spans of faces.  A single span all around begins at a seam.
 void VertexValues::inspectEdges() {
     bool isCut = !_isClosed || _spans.size() > 1;
     for (int face = 0; face < size(); ++face) {

@@ -56,7 +56,7 @@ void ForEachFan(Level const &level, Far::Index vert, FUNCTION function) {
     }
 }
 
-/// \brief What is met on the way around a vertex: its faces, and between them edges and diagonals.
+/// \brief The items around a vertex: its faces, and between them edges and diagonals.
 struct FanItem {
     bool isFace;
     Far::Index face;     ///< of a face
@@ -86,7 +86,7 @@ void ForEachFanItems(Level const &level, Far::Index vert, FanItems &items, FUNCT
     });
 }
 
-/// The same with items of its own.
+/// Overload with its own items.
 template <typename FUNCTION>
 void ForEachFanItems(Level const &level, Far::Index vert, FUNCTION function) {
     FanItems items;

@@ -2,6 +2,8 @@
 #include "cudaDevice.h"
 #include "cudaErrors.h"
 
+#include "far_ext/vtr/report.h"
+
 namespace OpenSubdivHex::OsdExt::internal {
 
 using FarExt::CallStatus;

@@ -2,7 +2,7 @@
 #ifndef OPENSUBDIVHEX_OSD_EXT_CUDA_CUDA_DEVICE_H
 #define OPENSUBDIVHEX_OSD_EXT_CUDA_CUDA_DEVICE_H
 
-#include "osd_ext/cudaStream.h"
+#include "osd_ext/cudaEvaluator.h"
 #include "osd_ext/device/device.h"
 
 #include <limits>

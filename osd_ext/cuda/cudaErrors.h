@@ -3,6 +3,7 @@
 #define OPENSUBDIVHEX_OSD_EXT_CUDA_CUDA_ERRORS_H
 
 #include "far_ext/status.h"
+#include "far_ext/vtr/report.h"
 
 #include <cuda_runtime_api.h>
 
@@ -12,7 +13,7 @@
 
 namespace OpenSubdivHex::OsdExt::internal {
 
-/// What an error of CUDA is to users.
+/// The status of a CUDA error.
 inline FarExt::CallStatus GetCudaStatus(cudaError_t error) {
     if (error == cudaSuccess) {
         return FarExt::CallStatus();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "osd_ext/cudaVertexBuffer.h"
+#include "osd_ext/cudaEvaluator.h"
 
 #include "cudaErrors.h"
 

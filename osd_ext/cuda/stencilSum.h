@@ -11,7 +11,7 @@ namespace OpenSubdivHex::OsdExt::internal {
 /// Threads that sum up one stencil.
 constexpr int kStencilLanes = 4;
 
-/// \brief What stencils are evaluated with, on the device.
+/// \brief Arguments of stencils on the device.
 struct StencilArguments {
     float const *src; ///< at the first float of element 0
     std::int64_t srcStride;

@@ -2,6 +2,7 @@
 #include "device.h"
 
 #include "far_ext/vtr/buffer.h"
+#include "far_ext/vtr/report.h"
 
 #include <algorithm>
 #include <cstdint>

@@ -4,17 +4,13 @@
 
 #include "deviceKernels.h"
 
-#include "far_ext/export.h"
-#include "far_ext/status.h"
+#include "osd_ext/refinementEvaluator.h"
 
 #include <cstdint>
 #include <functional>
 #include <string>
 
 namespace OpenSubdivHex::OsdExt::internal {
-
-/// What a device calls a buffer: a name of OpenGL, or an address.
-using DeviceBufferName = std::uint64_t;
 
 /// \brief A kernel to be run on \c count things.
 struct OPENSUBDIVHEX_API DeviceTask {
@@ -36,7 +32,7 @@ struct OPENSUBDIVHEX_API DeviceTask {
     DeviceArguments GetArguments() const;
 };
 
-/// \brief What DeviceEvaluator asks of OpenGL, of CUDA, or of whatever else runs kernels.
+/// \brief Interface of DeviceEvaluator to OpenGL, CUDA, or anything else that runs kernels.
 ///
 /// Memory that is not there throws std::bad_alloc.
 class OPENSUBDIVHEX_API Device {
@@ -78,7 +74,7 @@ public:
     virtual FarExt::CallStatus Prepare(DeviceKernel kernel, int length, int faceSize) = 0;
     /// Runs a kernel that is ready, behind all before it that wrote what Wait() stood behind.
     virtual void Run(DeviceTask const &task) = 0;
-    /// What runs afterwards sees what was written before.
+    /// Barrier: later kernels see earlier writes.
     virtual void Wait() = 0;
     /// Ends a frame: leaves the device as others expect it.
     virtual FarExt::CallStatus EndFrame() = 0;

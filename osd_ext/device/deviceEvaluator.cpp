@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "deviceEvaluator.h"
 
+#include "far_ext/stencil/interpolationMode.h"
 #include "far_ext/vtr/hierarchy.h"
+#include "far_ext/vtr/report.h"
 #include "osd_ext/refinement/evaluationChecks.h"
 
 #include <algorithm>
@@ -353,7 +355,7 @@ CallStatus DeviceEvaluator::EvaluateAllLevels(Values const &src, Values const &d
     return frame.Run(*_device);
 }
 
-// What is prepared late needs the refiner as it was.
+// Late preparation needs the unchanged refiner.
 CallStatus DeviceEvaluator::checkRefiner() const {
     return _refiner.GetNumRefinements() == _numRefinements
                ? CallStatus()

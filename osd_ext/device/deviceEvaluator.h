@@ -6,8 +6,6 @@
 #include "deviceLimit.h"
 #include "deviceRefinement.h"
 
-#include "osd_ext/refinementEvaluator.h"
-
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -16,7 +14,7 @@
 
 namespace OpenSubdivHex::OsdExt::internal {
 
-/// \brief What the evaluators of all devices do: RefinementEvaluator with the kernels of a Device.
+/// \brief Evaluates levels on any Device, as RefinementEvaluator does on processors.
 ///
 /// On the device there are one array of indices and one of weights for all refinements, two for each
 /// level whose limit was asked for, and levels below the one asked for.
@@ -24,11 +22,7 @@ class OPENSUBDIVHEX_API DeviceEvaluator {
 public:
     using Options = RefinementEvaluator::Options;
 
-    /// \brief A buffer and the descriptor of its elements.
-    struct Values {
-        DeviceBufferName buffer;
-        Osd::BufferDescriptor desc;
-    };
+    using Values = DeviceValues;
 
     DeviceEvaluator(std::unique_ptr<Device> device, FarExt::TopologyRefiner const &refiner);
 
@@ -50,7 +44,7 @@ public:
                                      int level);
     /// @}
 
-    /// Of a level whose faces are all drawn whole.
+    /// For a level whose faces are all drawn whole.
     std::int64_t GetNumTriangles(int level) const { return _numTriangles[std::size_t(level)]; }
     /// \brief Writes the triangles of a level, three vertices each, as CreateTriangleIndices orders
     /// them.
@@ -69,12 +63,12 @@ private:
         std::int64_t offset;
         std::int64_t stride;
     };
-    // What is run for a frame, step by step.
+    // The steps of a frame.
     class Frame {
     public:
         // Adds a kernel, unless it has nothing to do.
         void Add(DeviceTask &task, std::uint32_t count);
-        // What is added afterwards sees what was written before.
+        // Later steps see earlier writes.
         void Wait();
         // Runs nothing if the device does not take all kernels.
         FarExt::CallStatus Run(Device &device) const;

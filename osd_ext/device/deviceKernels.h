@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <initializer_list>
 
-// What stands before each function of the kernels: nvcc compiles them for its devices.
+// Qualifiers of each kernel function: nvcc compiles them for its devices.
 #if defined(__CUDACC__)
 #define OPENSUBDIVHEX_KERNEL_FUNCTION __host__ __device__ __forceinline__
 #else
@@ -14,7 +14,7 @@
 
 namespace OpenSubdivHex::OsdExt::internal {
 
-/// What kernels are told besides their arrays: kernelParameters.inl.
+/// Parameters of kernels besides their arrays: kernelParameters.inl.
 struct DeviceParameters {
     using uint = std::uint32_t;
     using Place = std::uint64_t;

@@ -3,6 +3,7 @@
 
 #include "far_ext/limit/limitOrigins.h"
 #include "far_ext/vtr/parallel.h"
+#include "far_ext/vtr/report.h"
 #include "osd_ext/refinement/latticeWeights.h"
 #include "osd_ext/refinement/limitKernel.h"
 #include "osd_ext/refinement/limitRowWeights.h"
@@ -122,7 +123,7 @@ void addLattice(LatticeFaces::Set const &set, std::vector<int> const &halves,
             indices[firstIndex + place * numFaces + std::size_t(i)] =
                 std::uint32_t(set.sources[face * numPlaces + place]);
         }
-        // What stands in the place of a vertex that another face makes comes once more, later.
+        // Duplicate indices, in slots that another face owns, occur again later.
         Index const standIn = set.GetStandIn(face);
         for (std::size_t k = 0; k < outputs.size(); ++k) {
             Index const output = set.outputs[face * numOutputs + outputs[k]];

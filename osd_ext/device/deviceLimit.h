@@ -27,7 +27,7 @@ struct DeviceRegularFace {
 /// made again.
 struct DeviceOwnFace {
     std::uint32_t firstVertex; ///< the others follow
-    /// Of each face beyond, from the neighbour on.
+    /// Vertices of each face beyond, from the neighbour on.
     std::uint32_t around[FarExt::internal::kRegularFaceSize][FarExt::internal::kRegularFaceSize];
 };
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "deviceRefinement.h"
 
+#include "far_ext/vtr/report.h"
 #include "osd_ext/refinement/preparedRefinement.h"
 
 #include "far_ext/vtr/indexSet.h"
@@ -249,7 +250,7 @@ bool Maker::isCirculant(FaceRule const &rule, int corner) const {
            rule.GetRow(corner) == _rules.GetCirculantRule(rule.GetSize()).GetRow(corner);
 }
 
-// Those without any corner that a run would make.
+// Faces without any corner in a run.
 std::vector<Index> Maker::findFacesInNoRun() const {
     std::vector<Index> faces;
     _rules.ForEachDenseFace(0, _level.numFaces, [&](Index face, int number) {
@@ -422,7 +423,7 @@ void Maker::planTruncation() {
 
 void Maker::Fill(std::int32_t *indices) const {
     if (_refinement.isTruncation) {
-        // Those of level 0 are the first of all.
+        // Sources in level 0 come first of all indices.
         std::copy(_truncationSources.begin(), _truncationSources.end(), indices);
         return;
     }

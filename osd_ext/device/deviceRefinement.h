@@ -75,7 +75,7 @@ struct DeviceRefinement {
     Far::Index numVVertices = 0; ///< F-vertices follow in the child
 
     /// @name The vertices of the parent's faces, by corner
-    /// Those of F-faces follow one another; the others are indices.
+    /// Vertices of F-faces follow one another; the others are indices.
     /// @{
     std::uint32_t numConsecutiveCorners = 0;
     std::uint32_t firstConsecutiveVertex = 0;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// What kernels are told besides their arrays: PARAMETER(type, name), or PARAMETER_ARRAY(type, name,
+// Parameters of kernels besides their arrays: PARAMETER(type, name), or PARAMETER_ARRAY(type, name,
 // size).  See kernels.inl.
 
 PARAMETER(uint, count) // of invocations
@@ -31,7 +31,7 @@ PARAMETER(uint, vertexOffset) // added to the vertices of triangles
 PARAMETER(uint, faceSize)     // of its faces
 PARAMETER(uint, firstVertex)  // of a run of vertices
 PARAMETER(float, vertexWeight)
-// Of plain faces.
+// For plain faces.
 PARAMETER(float, weightOfAll)
 PARAMETER(float, weightOfSelf)
 PARAMETER(float, weightOfNeighbors)

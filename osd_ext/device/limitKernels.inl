@@ -214,7 +214,7 @@ FUNCTION int getNumAxes() { return SIZE == 4 ? 2 : 3; }
 FUNCTION int getNumDifferences() { return SIZE == 6 ? 2 : 3; }
 FUNCTION int getNumSums() { return getNumAxes() + getNumDifferences(); }
 
-// That of 60 degrees.
+// The sine of 60 degrees.
 FUNCTION float getSine() { return 0.86602540378443864676f; }
 
 FUNCTION Six findLatticeWaves(Six at) {
@@ -403,7 +403,7 @@ FUNCTION void storeDerivatives(REFERENCE(LatticeOutputs) outputs, uint k, Six du
     }
 }
 
-// Those of AddOrbitWeights.
+// How many weights AddOrbitWeights makes.
 FUNCTION int getNumWeights() {
     return 3 * (getNumSums() + getNumDifferences()) *
                (getNumSingleWaves() + 2 * getNumFrequencies()) +

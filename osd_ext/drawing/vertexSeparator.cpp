@@ -2,6 +2,7 @@
 #include "vertexSeparator.h"
 
 #include "far_ext/vtr/parallel.h"
+#include "far_ext/vtr/report.h"
 
 #include <algorithm>
 #include <cstdint>

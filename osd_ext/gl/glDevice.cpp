@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "glDevice.h"
 
+#include "far_ext/vtr/report.h"
 #include "osd_ext/gl/kernelText.h"
 
 #include <algorithm>
@@ -29,7 +30,7 @@ constexpr char const *kNames[] = {
     "makeListedFVertex", "makeVVertexOfRun",   "makeListedVVertex",   "makeRegularLimit",
     "makeOwnLimit",      "makeLatticeLimit",   "makeListedLimit",     "makeTriangles"};
 
-// What stands before the kernels, behind LENGTH and SIZE: see kernels.inl.
+// Text before the kernels, behind LENGTH and SIZE: see kernels.inl.
 constexpr char const *kHead = R"(
 layout(local_size_x = 64) in;
 #define PLACE uint

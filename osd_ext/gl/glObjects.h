@@ -81,7 +81,7 @@ public:
     GLint operator[](char const *uniform) const { return glGetUniformLocation(_name, uniform); }
 
 private:
-    // What is said of a shader or a program.
+    // The log of a shader or a program.
     template <typename GET_NUMBER, typename GET_LOG>
     void addLog(GLuint name, GET_NUMBER getNumber, GET_LOG getLog) {
         GLint size = 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "osd_ext/patchEvaluation.h"
+#include "osd_ext/patchEvaluator.h"
 
 #include "osd_ext/simd/quad.h"
 
@@ -10,7 +10,16 @@
 
 namespace OpenSubdivHex::OsdExt::internal {
 
+/// \brief The types that evaluators and the functions below share.
+struct PatchTypes {
+    using Output = PatchEvaluatorBase::PatchOutput;
+    using Task = PatchEvaluatorBase::PatchTask;
+};
+
 namespace {
+
+using PatchOutput = PatchTypes::Output;
+using PatchTask = PatchTypes::Task;
 
 using OpenSubdiv::Far::PatchDescriptor;
 
@@ -338,7 +347,11 @@ void evaluateByOsd(PatchTask const &task, int place) {
 
 } // namespace
 
-bool CheckPatchTask(PatchTask const &task, int numCoords) {
+} // namespace OpenSubdivHex::OsdExt::internal
+
+namespace OpenSubdivHex::OsdExt {
+
+bool PatchEvaluatorBase::checkPatchTask(PatchTask const &task, int numCoords) {
     auto const isWell = [&](Osd::BufferDescriptor const &desc) {
         return desc.length == task.srcDesc.length && desc.length >= 1 &&
                desc.stride >= desc.length && desc.offset >= 0;
@@ -355,7 +368,8 @@ bool CheckPatchTask(PatchTask const &task, int numCoords) {
            (task.src && task.coords && task.arrays && task.indices && task.params);
 }
 
-void EvaluatePatches(PatchTask const &task, int begin, int end) {
+void PatchEvaluatorBase::evaluatePatches(PatchTask const &task, int begin, int end) {
+    using namespace internal;
     auto const isWanted = [&](int first, int last) {
         return std::any_of(task.outputs + first, task.outputs + last,
                            [](PatchOutput const &output) { return output.dst != nullptr; });
@@ -401,4 +415,4 @@ void EvaluatePatches(PatchTask const &task, int begin, int end) {
     }
 }
 
-} // namespace OpenSubdivHex::OsdExt::internal
+} // namespace OpenSubdivHex::OsdExt

@@ -32,7 +32,7 @@ extern DenseFaceKernels const kDenseFaceKernelsPortable;
 extern DenseFaceKernels const kDenseFaceKernelsAvx2;
 extern DenseFaceKernels const kDenseFaceKernelsAvx512;
 
-/// Those of the SimdLevel in use.
+/// The kernels of the SimdLevel in use.
 DenseFaceKernels const &GetDenseFaceKernels();
 
 } // namespace OpenSubdivHex::OsdExt::internal

@@ -65,7 +65,7 @@ struct Access {
     static void StoreExactly(Elements<float> const &dst, std::ptrdiff_t i, QUADS const &quads) {
         storeExactly<WIDTH>(At(dst, i), quads);
     }
-    // The same thread stores the next element afterwards.
+    // This thread stores the next element afterwards.
     template <class QUADS>
     static void Store(Elements<float> const &dst, std::ptrdiff_t i, QUADS const &quads) {
         storeExactly<kReach>(At(dst, i), quads);

@@ -2,6 +2,7 @@
 #include "evaluationChecks.h"
 
 #include "far_ext/status.h"
+#include "far_ext/vtr/report.h"
 
 #include <string>
 

@@ -28,7 +28,7 @@ OPENSUBDIVHEX_INLINE float const *sumWaves(float const *weights,
     }
     return weights + COUNT * NUM_ROWS;
 }
-/// The same of two arrays of values.
+/// Overload for two arrays of values.
 template <class SIMD, int COUNT, int NUM_ROWS, int NUM>
 OPENSUBDIVHEX_INLINE float const *
 sumWaves(float const *weights, typename SIMD::Vector const *cosines,
@@ -179,7 +179,7 @@ struct LatticeKernel {
         return weights;
     }
 
-    /// Those of the first one.
+    /// The values of the first face.
     static OPENSUBDIVHEX_INLINE float const *EvaluateHalf(float const *weights,
                                                           Sources const &sources, Values &first) {
         PairWaves pair;

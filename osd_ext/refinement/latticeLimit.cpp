@@ -130,7 +130,7 @@ LatticeLimit::Corners LatticeLimit::makeCorners(LatticeFaces const &faces,
                                                 UsedOrbits const &sources) {
     Corners corners;
     auto const faceSize = std::size_t(of.patch.GetFaceSize());
-    // Of triangles one corner in six is made.
+    // For triangles one corner in six is made.
     if (!of.corners || faceSize == 3) {
         return corners;
     }

@@ -38,7 +38,7 @@ template <class SIMD, class ACCESS, int FACE_SIZE>
 struct LatticeLoader {
     using Vector = typename SIMD::Vector;
 
-    /// Those of an orbit.
+    /// Loads the values of an orbit.
     OPENSUBDIVHEX_INLINE void Load(int orbit, Vector (&x)[FACE_SIZE]) const {
         std::uint32_t const *place = places + orbit * FACE_SIZE * RegularFaceGroup::kSize;
         for (int corner = 0; corner < FACE_SIZE; ++corner, place += RegularFaceGroup::kSize) {

@@ -57,7 +57,7 @@ struct OneFace {
     }
 };
 
-/// What the kernels take of elements at a time.
+/// Elements that the kernels take at a time.
 enum class LimitWidth {
     Points, ///< three floats of elements that have no more and no gaps
     Quads,  ///< four of any elements

@@ -33,7 +33,7 @@ struct SourceWeights {
     double SumCosines(int frequency) const { return sum(frequency, 0); }
     double SumSines(int frequency) const { return sum(frequency, kPi / 2); }
 
-    /// What FaceWaves is short of.
+    /// Factors that FaceWaves leaves out.
     double GetCosineFactor(int frequency) const {
         return kind == kPairs && frequency == 1 ? kSine : 1;
     }

@@ -93,7 +93,7 @@ struct VertexGroup {
     std::size_t firstWeight; ///< of the first source: of the point, du and dv; then the next one's
 };
 
-/// \brief What is evaluated of points that some sources have.
+/// \brief A task of the kernels: outputs at points, from some sources.
 struct LimitTask {
     static constexpr int kMaxOutputs = FarExt::internal::RegularFaceMask::kNumSums;
 
@@ -131,7 +131,7 @@ struct VertexLimitTask : LimitTask {
 struct LatticeTask : LimitTask {
     static constexpr int kNumDerivatives = 4; ///< weights of derivatives in terms of others
 
-    /// Of outputs.
+    /// Number of orbits of outputs.
     int GetNumOrbits() const { return 2 * numPairs + numHalves + numAxes; }
 
     int faceSize;

@@ -5,38 +5,34 @@
 
 #include "limitKernelTemplate.h"
 
-#include <immintrin.h>
+#include "osd_ext/simd/octet.h"
 
 namespace OpenSubdivHex::OsdExt::internal {
 namespace {
 
 /// Two faces.
-struct Avx2Faces {
+struct Avx2Faces : Avx2Octet {
     static constexpr int kNumFaces = 2;
-    using Vector = __m256;
 
-    static OPENSUBDIVHEX_INLINE Vector Spread(float value) { return _mm256_set1_ps(value); }
-    static OPENSUBDIVHEX_INLINE Vector MultiplyAdd(Vector a, Vector b, Vector sum) {
-        return _mm256_fmadd_ps(a, b, sum);
-    }
     static OPENSUBDIVHEX_INLINE Vector Load(float const *const *places) {
-        return join(_mm_loadu_ps(places[0]), _mm_loadu_ps(places[1]));
+        return Join(LoadFloats<kQuad>(places[0]), LoadFloats<kQuad>(places[1]));
     }
     static OPENSUBDIVHEX_INLINE Vector LoadRest(float const *const *places, int length) {
         __m128i const isRead = _mm_cmpgt_epi32(_mm_set1_epi32(length), _mm_setr_epi32(0, 1, 2, 3));
-        return join(_mm_maskload_ps(places[0], isRead), _mm_maskload_ps(places[1], isRead));
+        return Join(Quad(_mm_maskload_ps(places[0], isRead)),
+                    Quad(_mm_maskload_ps(places[1], isRead)));
     }
     static OPENSUBDIVHEX_INLINE void StorePoints(float *const *places, Vector vector) {
-        StoreFloats<kPoint>(places[0], getFirst(vector));
-        StoreFloats<kPoint>(places[1], getSecond(vector));
+        StoreFloats<kPoint>(places[0], GetFirst(vector));
+        StoreFloats<kPoint>(places[1], GetSecond(vector));
     }
     static OPENSUBDIVHEX_INLINE void StoreQuads(float *const *places, Vector vector) {
-        StoreFloats<kQuad>(places[0], getFirst(vector));
-        StoreFloats<kQuad>(places[1], getSecond(vector));
+        StoreFloats<kQuad>(places[0], GetFirst(vector));
+        StoreFloats<kQuad>(places[1], GetSecond(vector));
     }
     static OPENSUBDIVHEX_INLINE void StoreRest(float *const *places, Vector vector, int length) {
-        OsdExt::internal::StoreRest(places[0], getFirst(vector), length);
-        OsdExt::internal::StoreRest(places[1], getSecond(vector), length);
+        OsdExt::internal::StoreRest(places[0], GetFirst(vector), length);
+        OsdExt::internal::StoreRest(places[1], GetSecond(vector), length);
     }
     template <int COUNT>
     static OPENSUBDIVHEX_INLINE void StoreRun(float *const *places, Vector const (&x)[COUNT]) {
@@ -48,17 +44,6 @@ struct Avx2Faces {
             next[1] += kPoint;
         }
         StorePoints(next, x[COUNT - 1]);
-    }
-
-private:
-    static OPENSUBDIVHEX_INLINE Vector join(__m128 first, __m128 second) {
-        return _mm256_insertf128_ps(_mm256_castps128_ps256(first), second, 1);
-    }
-    static OPENSUBDIVHEX_INLINE Quad getFirst(Vector vector) {
-        return Quad(_mm256_castps256_ps128(vector));
-    }
-    static OPENSUBDIVHEX_INLINE Quad getSecond(Vector vector) {
-        return Quad(_mm256_extractf128_ps(vector, 1));
     }
 };
 

@@ -75,7 +75,7 @@ struct Avx512Faces {
     }
 
 private:
-    // Of the first floats.
+    // A mask of the first floats.
     static OPENSUBDIVHEX_INLINE __mmask8 getMask(int count) { return __mmask8((1U << count) - 1); }
     static OPENSUBDIVHEX_INLINE Vector join(__m128 first, __m128 second, __m128 third,
                                             __m128 fourth) {

@@ -12,7 +12,7 @@
 
 namespace OpenSubdivHex::OsdExt::internal {
 
-/// \brief What all plain faces of one size share:
+/// \brief The mask of all plain faces of one size:
 /// P_i = self V_i + neighbor (V_i-1 + V_i+1) + opposite V_i+3 + all (sum of V).
 ///
 /// So are all masks of 3 to 6 sides, the opposite vertex being there with 6 alone, and Average of
@@ -24,7 +24,7 @@ struct PlainFaceMask {
     float neighbor = 0;
     float opposite = 0;
     float all = 0;
-    /// Of other faces: the weights of corner 0 twice in a row, so that every rotation of them is
+    /// For other faces: the weights of corner 0 twice in a row, so that every rotation of them is
     /// contiguous.  Else empty.
     std::vector<float> weights;
 };
@@ -82,7 +82,7 @@ struct Groups {
     std::vector<ITEM> items;
     std::vector<std::size_t> firsts = {0}; ///< by group, and the number of items
 
-    /// What has been added since the last call is a group.
+    /// Makes a group of the items added since the last call.
     void EndGroup() { firsts.push_back(items.size()); }
 
     int GetNumGroups() const { return int(firsts.size()) - 1; }
@@ -107,10 +107,10 @@ struct IndexRun {
 struct PreparedRefinement {
     std::shared_ptr<FarExt::internal::RefinementRules const> rules; ///< null for a truncation
     PlainMasks masks;
-    /// Of the parent, plain faces and hexagons with dense rules, in runs of one size.
+    /// Plain faces of the parent, and hexagons with dense rules, in runs of one size.
     Groups<IndexRun> faceRuns;
     Groups<WeightedFace> weightedFaces;
-    /// Of a truncation, all vertices that it makes.
+    /// For a truncation, all vertices that it makes.
     Groups<ListedVertex> listedVertices;
     Groups<IndexRun> vertexRuns; ///< plain vertices of the parent, and those with weights by face
     Groups<WeightedVertex> weightedVertices;

@@ -46,7 +46,7 @@ void refineWeightedCorner(float const *weights, Elements<float const> const &src
     }
     auto point = Spread(weights[j]) * ACCESS::LoadExactly(src, verts[j]);
     for (++j; j < size; ++j) {
-        // What weighs nothing has no part in the sign of a zero either.
+        // Zero weights are skipped: they would change the sign of a zero.
         if (weights[j] != 0) {
             point = point + Spread(weights[j]) * ACCESS::LoadExactly(src, verts[j]);
         }

@@ -6,6 +6,10 @@
 
 #include <cstring>
 
+#ifdef __AVX__
+#include <immintrin.h>
+#endif
+
 namespace OpenSubdivHex::OsdExt::internal {
 // Files that are compiled for other processors have quads of their own: none may be linked with
 // the code of another.
@@ -41,13 +45,17 @@ OPENSUBDIVHEX_INLINE Quad LoadFloats(float const *src) {
         Quad result;
         std::memcpy(&result, src, sizeof(result));
         return result;
-#ifdef __SSE2__
+#ifdef __AVX__
     } else if constexpr (WIDTH == 3) {
+        return Quad(_mm_maskload_ps(src, _mm_setr_epi32(-1, -1, -1, 0)));
+#endif
+#ifdef __SSE2__
+    } else if constexpr (WIDTH > 1) {
         // Two at once, as a double; compilers read them one by one.
         using Pairs = double __attribute__((vector_size(kQuad * sizeof(float))));
         double pair = 0;
         std::memcpy(&pair, src, sizeof(pair));
-        auto const rest = reinterpret_cast<Pairs>(Quad{src[2], 0, 0, 0});
+        auto const rest = reinterpret_cast<Pairs>(Quad{WIDTH > 2 ? src[2] : 0, 0, 0, 0});
         return reinterpret_cast<Quad>(Pairs{pair, rest[0]});
 #endif
     } else {

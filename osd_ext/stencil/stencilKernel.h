@@ -8,6 +8,14 @@
 
 namespace OpenSubdivHex::OsdExt::internal {
 
+/// \brief The types that evaluators and kernels share.
+struct StencilTypes {
+    using Rows = StencilEvaluatorBase::StencilRows;
+    using Output = StencilEvaluatorBase::StencilOutput;
+};
+using StencilRows = StencilTypes::Rows;
+using StencilOutput = StencilTypes::Output;
+
 /// \brief Stencils in a row that share a list of indices: see CompactStencilTable.
 struct StencilBlock {
     int firstStencil;

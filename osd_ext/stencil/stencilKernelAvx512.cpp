@@ -43,7 +43,7 @@ struct WidePacket {
     static Vector MultiplyAdd(Vector elements, Vector weights, Vector sum) {
         return _mm512_fmadd_ps(elements, weights, sum);
     }
-    /// Of elements \p first and on alone.
+    /// Only from element \p first on.
     static Vector MultiplyAddFrom(int first, Vector elements, Vector weights, Vector sum) {
         return _mm512_mask3_fmadd_ps(elements, weights, sum, __mmask16(0xffffu << (8 * first)));
     }
@@ -103,7 +103,7 @@ struct NarrowPacket {
     static Vector MultiplyAdd(Vector elements, Vector weights, Vector sum) {
         return _mm512_fmadd_ps(elements, weights, sum);
     }
-    /// Of elements \p first and on alone.
+    /// Only from element \p first on.
     static Vector MultiplyAddFrom(int first, Vector elements, Vector weights, Vector sum) {
         return _mm512_mask3_fmadd_ps(elements, weights, sum, __mmask16(0xffffu << (4 * first)));
     }

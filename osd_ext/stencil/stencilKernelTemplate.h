@@ -197,7 +197,7 @@ void evalPacked(StencilTask const &task, int begin, int end, std::size_t firstWe
     sumFloats<SIMD, LENGTH>(task, Source<LENGTH>{task.src}, 0, begin, end, firstWeight);
 }
 
-/// The same of any length and stride: eight floats at a time, then the rest.
+/// Any length and stride: eight floats at a time, then the rest.
 template <class SIMD>
 void evalStrided(StencilTask const &task, int begin, int end, std::size_t firstWeight) {
     constexpr decltype(&sumFloats<SIMD, 8, 0>) kSums[] = {

@@ -3,7 +3,7 @@
 
 A TopologyRefiner takes a base mesh as arrays and refines it; its levels are arrays.  Values, such
 as positions, are refined with a RefinementEvaluator, with a StencilTable and one of the evaluators
-CpuEvaluator and OmpEvaluator, or level by level with a PrimvarRefiner.  A LimitStencilTable has
+CpuEvaluator and ParallelEvaluator, or level by level with a PrimvarRefiner.  A LimitStencilTable has
 points and tangents of the limit surface, a PatchTable patches close to it for any place, a
 SurfaceFactory the surfaces of the base faces, and SurfacePlaces any number of places on these.
 

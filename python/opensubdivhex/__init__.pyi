@@ -89,16 +89,6 @@ class FaceMask:
     @property
     def value(self) -> int: ...
 
-class Interpolation:
-    VERTEX: Interpolation
-    VARYING: Interpolation
-    def __init__(self, value: int) -> None: ...
-    def __int__(self) -> int: ...
-    @property
-    def name(self) -> str: ...
-    @property
-    def value(self) -> int: ...
-
 class Rule:
     SMOOTH: Rule
     DART: Rule
@@ -202,7 +192,6 @@ _FVarLinearInterpolation = FVarLinearInterpolation | Literal[
 ]
 _FaceMask = FaceMask | Literal["average", "cosine", "smooth"]
 _FirstStep = FirstStep | Literal["none", "tri_hex", "truncate"]
-_Interpolation = Interpolation | Literal["vertex", "varying"]
 _SchemeType = SchemeType | Literal["hexagonal", "doo_sabin", "tri_hex"]
 _SimdLevel = SimdLevel | Literal["portable", "avx2", "avx512"]
 _StencilMode = StencilMode | Literal["vertex", "varying", "face_varying"]
@@ -245,7 +234,7 @@ class TopologyRefiner:
         fvar_channels: Iterable[ArrayLike] | None = None,
         num_fvar_values: ArrayLike | None = None,
         is_left_handed: bool = False,
-        vtx_boundary_interpolation: VtxBoundary_Interpolation = "none",
+        vtx_boundary_interpolation: _VtxBoundaryInterpolation = "none",
         fvar_linear_interpolation: _FVarLinearInterpolation = "all",
         creasing_method: _CreasingMethod = "uniform",
         face_mask: _FaceMask = "average",
@@ -522,7 +511,7 @@ class StencilTable:
         fvar_channel: int = 0,
     ) -> NDArray[np.int32]: ...
     @staticmethod
-    def estimate_size(
+    def get_size(
         refiner: TopologyRefiner,
         *,
         interpolation_mode: _StencilMode = "vertex",
@@ -551,7 +540,7 @@ class LimitStencilTable(StencilTable):
     def __init__(
         self,
         refiner: TopologyRefiner,
-        level: int = 0,
+        level: int = -1,
         *,
         generate_vertices: bool = True,
         generate_further_sides: bool = False,
@@ -669,7 +658,7 @@ class CpuEvaluator:
         end: int | None = None,
     ) -> tuple[NDArray[np.float32], NDArray[np.float32], NDArray[np.float32]]: ...
 
-class OmpEvaluator:
+class ParallelEvaluator:
     @staticmethod
     def eval_stencils(
         table: StencilTable | CompactStencilTable,
@@ -728,26 +717,11 @@ class RefinementEvaluator:
         dv: NDArray[np.float32] | None = None,
     ) -> tuple[NDArray[np.float32], NDArray[np.float32], NDArray[np.float32]]: ...
 
-def compute_face_vertex_mask(
-    mask: _FaceMask,
-    interpolation: _Interpolation,
-    n: int,
-) -> NDArray[np.float64]: ...
-def compute_half_face_vertex_mask(
-    mask: _FaceMask,
-    interpolation: _Interpolation,
-) -> NDArray[np.float64]: ...
 def compute_normals(
     du: ArrayLike,
     dv: ArrayLike,
     normals: NDArray[Any] | None = None,
 ) -> NDArray[Any]: ...
-def compute_sector_shrink(mask: _FaceMask, sector_size: float) -> float: ...
-def compute_tri_hex_mask(n: int) -> NDArray[np.float64]: ...
-def compute_vertex_vertex_mask(
-    interpolation: _Interpolation,
-    num_faces: int,
-) -> tuple[float, float]: ...
 def create_polygon_indices(
     level: TopologyLevel,
     *,

@@ -7,7 +7,7 @@ import pytest
 from meshes import CUBE_FACES, CUBE_POSITIONS, make_grid
 
 POSITIONS, FACES = make_grid(5, 4)
-EVALUATORS = [osh.CpuEvaluator, osh.OmpEvaluator]
+EVALUATORS = [osh.CpuEvaluator, osh.ParallelEvaluator]
 
 
 @pytest.fixture
@@ -80,7 +80,7 @@ def test_values_are_written_to_given_arrays(refiner):
     wide_src = np.zeros((len(POSITIONS), 5), np.float32)
     wide_src[:, 1:4] = POSITIONS
     for run in (lambda s, d: evaluator.evaluate(s, dst=d),
-                lambda s, d: osh.OmpEvaluator.eval_stencils(table, s, d),
+                lambda s, d: osh.ParallelEvaluator.eval_stencils(table, s, d),
                 lambda s, d: osh.CpuEvaluator.eval_stencils(osh.CompactStencilTable(table), s, d)):
         wide = np.full((n + 2, 7), 99, np.float32)
         dst = wide[1:-1, 2:5]
@@ -120,7 +120,7 @@ def test_derivatives_go_to_given_arrays():
     expected = osh.CpuEvaluator.eval_stencils_with_derivatives(table, CUBE_POSITIONS)
     whole = np.zeros((8, 9), np.float32)
     views = whole[:, 0:3], whole[:, 3:6], whole[:, 6:9]
-    result = osh.OmpEvaluator.eval_stencils_with_derivatives(table, CUBE_POSITIONS, *views)
+    result = osh.ParallelEvaluator.eval_stencils_with_derivatives(table, CUBE_POSITIONS, *views)
     for view, returned, values in zip(views, result, expected):
         assert view is returned
         np.testing.assert_array_equal(view, values)

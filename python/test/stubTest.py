@@ -2,6 +2,7 @@
 """The type stubs and the docstrings say what there is, with the arguments that it takes."""
 
 import ast
+import builtins
 import inspect
 import pathlib
 import re
@@ -101,12 +102,29 @@ def test_stubs_have_the_docstrings_of_the_module():
 
 def test_names_of_options_are_those_that_are_taken():
     aliases = {node.targets[0].id: node.value for node in STUBS.body if isinstance(node, ast.Assign)}
-    assert len(aliases) > 10
+    assert len(aliases) >= 10
     for name, value in aliases.items():
         listed = [constant.value for constant in ast.walk(value.right)
                   if isinstance(constant, ast.Constant)]
         assert f"_{value.left.id}" == name
         assert listed == [member.lower() for member in getattr(osh, value.left.id).__members__]
+
+
+def test_names_in_annotations_are_there():
+    there = set(dir(builtins))
+    for node in STUBS.body:
+        if isinstance(node, (ast.Import, ast.ImportFrom)):
+            there |= {alias.asname or alias.name for alias in node.names}
+        elif isinstance(node, ast.Assign):
+            there |= {target.id for target in node.targets}
+        elif isinstance(node, ast.AnnAssign):
+            there.add(node.target.id)
+        elif isinstance(node, (ast.ClassDef, ast.FunctionDef)):
+            there.add(node.name)
+    there |= {"property", "staticmethod", "overload"}
+    used = {node.id for node in ast.walk(STUBS)
+            if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Load)}
+    assert used - there == set()
 
 
 def test_objects_say_what_they_are():

@@ -130,12 +130,11 @@ def test_sizes_are_told_before():
     refiner = refine(CUBE_FACES, 3)
     for dtype in ("float32", "float64"):
         table = osh.StencilTable(refiner, dtype=dtype)
-        size = osh.StencilTable.estimate_size(refiner, dtype=dtype)
+        size = osh.StencilTable.get_size(refiner, dtype=dtype)
         assert size["num_stencils"] == table.num_stencils
         assert size["num_weights"] == len(table.weights)
         assert size["num_bytes"] == sum(array.nbytes for array in (
             table.sizes, table.offsets, table.control_indices, table.weights))
-        assert size["num_peak_bytes"] >= size["num_bytes"]
 
 
 def test_face_varying_tables():
@@ -202,18 +201,12 @@ def test_compact_tables_are_smaller():
         osh.CompactStencilTable(osh.LimitStencilTable(refine(CUBE_FACES, 1), 0))
 
 
-def test_masks():
-    for mask in ("average", "cosine", "smooth"):
-        for n in (3, 4, 5, 6, 11):
-            weights = osh.compute_face_vertex_mask(mask, "vertex", n)
-            assert weights.shape == (n,) and abs(weights.sum() - 1) < 1e-12
-            np.testing.assert_allclose(weights[1:], weights[1:][::-1], atol=1e-15)
-    np.testing.assert_allclose(osh.compute_face_vertex_mask("cosine", "vertex", 6) * 24,
-                               [11, 4, 2, 1, 2, 4])
-    np.testing.assert_allclose(osh.compute_tri_hex_mask(3) * 9, [4, 4, 1])
-    assert osh.compute_vertex_vertex_mask("vertex", 3) == (0.25, 0.25)
-    assert osh.compute_vertex_vertex_mask("varying", 3) == (1, 0)
-    half = osh.compute_half_face_vertex_mask("smooth", "vertex")
-    np.testing.assert_allclose(half.sum(axis=1), 1)
-    np.testing.assert_allclose(half[0], [0.75, 0.25, 0, 0])
-    assert 0 < osh.compute_sector_shrink("smooth", 4) < 1
+def test_limit_tables_are_of_the_last_level_by_default():
+    refiner = refine(CUBE_FACES, 2, full=True)
+    for factorized in (True, False):
+        table = osh.LimitStencilTable(refiner, factorize_intermediate_levels=factorized)
+        same = osh.LimitStencilTable(refiner, 2, factorize_intermediate_levels=factorized)
+        assert table.num_stencils == refiner.get_level(2).num_vertices
+        assert table.weights.tobytes() == same.weights.tobytes()
+        assert table.to_scipy().shape == same.to_scipy().shape
+    assert osh.LimitStencilTable(refiner, 0).num_stencils == 8

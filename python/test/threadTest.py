@@ -190,7 +190,7 @@ def test_executors_make_the_same_bits():
                 table = osh.StencilTable(refiner, max_level=2)
                 results.append((refiner.get_level(3).face_vertices.tobytes(),
                                 table.weights.tobytes(),
-                                osh.OmpEvaluator.eval_stencils(table, positions).tobytes(),
+                                osh.ParallelEvaluator.eval_stencils(table, positions).tobytes(),
                                 osh.RefinementEvaluator(refiner).evaluate(positions).tobytes()))
     assert len(results) > 1 and all(result == results[0] for result in results)
     assert osh.get_executor() == osh.ExecutorType.DEFAULT

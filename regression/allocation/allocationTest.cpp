@@ -4,17 +4,15 @@
 // nothing leaks, and what was there before can be used as ever.
 #include "failingAllocations.h"
 
-#include "far_ext/limitStencilTableFactory.h"
+#include "far_ext/executor.h"
 #include "far_ext/primvarRefiner.h"
 #include "far_ext/stencilTableFactory.h"
-#include "far_ext/threads.h"
 #include "far_ext/topologyRefinerFactory.h"
-#include "osd_ext/compactStencilTable.h"
 #include "osd_ext/cpuEvaluator.h"
-#include "osd_ext/ompEvaluator.h"
+#include "osd_ext/polygonIndices.h"
 #include "osd_ext/refinementEvaluator.h"
 #include "osd_ext/simdLevel.h"
-#include "osd_ext/triangleIndices.h"
+#include "osd_ext/stencilEvaluator.h"
 #include "regression/osd_ext/evaluators.h"
 #include "regression/shapes/featureShapes.h"
 #include "regression/shapes/shapeDescriptor.h"
@@ -123,7 +121,7 @@ void evaluateTable(TopologyRefiner const &refiner) {
                              table->GetWeights().data(), 0, table->GetNumStencils()));
     };
     evaluate(EvaluatorFunctions::Of<OsdExt::CpuEvaluator>().value);
-    evaluate(EvaluatorFunctions::Of<OsdExt::OmpEvaluator>().value);
+    evaluate(EvaluatorFunctions::Of<OsdExt::ParallelEvaluator>().value);
 }
 
 void evaluateWithoutTable(TopologyRefiner const &refiner, FarExt::StencilMode mode) {
@@ -171,7 +169,7 @@ std::vector<Step> const &getSteps() {
          [](Subject const &, TopologyRefiner &refiner) { createSelection(refiner); }},
         {"size of a table", true,
          [](Subject const &, TopologyRefiner &refiner) {
-             StencilTableFactory::EstimateSize(refiner, {});
+             StencilTableFactory::GetSize(refiner, {});
          }},
         {"limit of the base", true,
          [](Subject const &, TopologyRefiner &refiner) { createLimit<double>(refiner, 0); }},

@@ -6,7 +6,7 @@
 #include "bfr_ext/cellTree.h"
 #include "bfr_ext/levelTessellation.h"
 #include "bfr_ext/surfaceFactory.h"
-#include "far_ext/limitStencilTableFactory.h"
+#include "far_ext/stencilTableFactory.h"
 #include "far_ext/topologyRefinerFactory.h"
 #include "regression/shapes/shapeDescriptor.h"
 #include "regression/shapes/shapes.h"

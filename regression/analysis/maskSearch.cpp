@@ -6,7 +6,7 @@
 #include "position.h"
 #include "ripple.h"
 
-#include "far_ext/mask.h"
+#include "far_ext/rules/mask.h"
 #include "far_ext/topologyRefinerFactory.h"
 #include "far_ext/vtr/hierarchy.h"
 #include "regression/shapes/shapeDescriptor.h"

@@ -4,7 +4,7 @@
 
 #include "evenness.h"
 
-#include "far_ext/mask.h"
+#include "far_ext/rules/mask.h"
 #include "regression/shapes/featureShapes.h"
 
 #include <Eigen/Core>

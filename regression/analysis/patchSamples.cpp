@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "patchSamples.h"
 
-#include "far_ext/limitStencilTableFactory.h"
-#include "far_ext/patchMap.h"
+#include "far_ext/patchTableFactory.h"
 #include "far_ext/primvarRefiner.h"
+#include "far_ext/stencilTableFactory.h"
 #include "far_ext/topologyRefinerFactory.h"
 #include "regression/shapes/shapeDescriptor.h"
 
@@ -111,8 +111,8 @@ PatchSamples::PatchSamples(Shape const &shape, int level, FarExt::FirstStep firs
                            double tolerance, std::size_t maxNumSamples)
     : _level(level) {
     FarExt::TopologyRefinerFactory::Options options;
-    options.schemeOptions.faceMask = FarExt::FaceMask::Smooth;
-    options.schemeOptions.firstStep = firstStep;
+    options.hexSchemeOptions.faceMask = FarExt::FaceMask::Smooth;
+    options.hexSchemeOptions.firstStep = firstStep;
     OpenSubdiv::Sdc::Options sdcOptions;
     sdcOptions.SetVtxBoundaryInterpolation(OpenSubdiv::Sdc::Options::VTX_BOUNDARY_EDGE_ONLY);
     ShapeDescriptor const descriptor(shape);

@@ -10,8 +10,8 @@
 // for all.
 #include "patchSamples.h"
 
+#include "far_ext/executor.h"
 #include "far_ext/patch/patchBuilder.h"
-#include "far_ext/threads.h"
 #include "regression/shapes/featureShapes.h"
 #include "regression/shapes/meshOperations.h"
 #include "regression/shapes/torus.h"

@@ -5,21 +5,12 @@
 #include "spectrum.h"
 
 #include "regression/reference/largestValue.h"
-#include "regression/shapes/featureShapes.h"
-#include "regression/shapes/shapeDescriptor.h"
-
-#include "far_ext/primvarRefiner.h"
-#include "far_ext/topologyRefinerFactory.h"
 
 #include <Eigen/Eigenvalues>
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
-#include <deque>
-#include <map>
-#include <set>
-#include <utility>
 
 namespace OpenSubdivHex::Regression::spectrumTest {
 
@@ -109,52 +100,6 @@ void expectBoundedCurvature(LocalSubdivision const &center) {
         }
     }
 }
-
-/// The vertices around one that lies on a border and has one face, in an order that the faces tell: of the faces up to
-/// two edges away from there.
-std::vector<int> walkFromOneFace(FarExt::TopologyLevel const &level, int vertex) {
-    constexpr int kNumRings = 2;
-    struct Step {
-        int face;
-        int local;
-        int ring;
-    };
-    std::vector<int> vertices;
-    std::set<int> known;
-    int const first = level.GetVertexFaces(vertex)[0];
-    std::set<int> seen{first};
-    std::deque<Step> steps{{first, level.GetFaceVertices(first).FindIndex(vertex), 0}};
-    for (; !steps.empty(); steps.pop_front()) {
-        Step const step = steps.front();
-        int const size = level.GetFaceVertices(step.face).size();
-        for (int i = 0; i < size; ++i) {
-            int const local = (step.local + i) % size;
-            int const corner = level.GetFaceVertices(step.face)[local];
-            if (known.insert(corner).second) {
-                vertices.push_back(corner);
-            }
-            int const edge = level.GetFaceEdges(step.face)[local];
-            auto const sides = level.GetEdgeFaces(edge);
-            int const side = sides[0] == step.face ? 1 : 0;
-            if (sides.size() == 2 && step.ring < kNumRings && seen.insert(sides[side]).second) {
-                steps.push_back(
-                    {sides[side], level.GetEdgeFaceLocalIndices(edge)[side], step.ring + 1});
-            }
-        }
-    }
-    return vertices;
-}
-
-/// A vertex in terms of those of an earlier level.
-struct Combination {
-    void Clear() { weights.clear(); }
-    void AddWithWeight(Combination const &other, double weight) {
-        for (auto const &[vertex, part] : other.weights) {
-            weights[vertex] += weight * part;
-        }
-    }
-    std::map<int, double> weights;
-};
 
 } // namespace
 
@@ -453,70 +398,6 @@ TEST(Spectrum, IrregularVerticesOfSmooth) {
         std::complex<double> const factor = std::polar(spectrum.subdominant, -angle * vertex.turn);
         EXPECT_LT(GetLargestValue(vertex.matrix.transpose() * tangent - factor * tangent),
                   2 * kDigits);
-    }
-}
-
-// At a vertex of a border, or of a crease, that has one face on its side.  The masks of two steps alternate: these are
-// the square roots of the eigenvalues of both.  The largest are those of the border's tangent and of what lies across,
-// then that of the border's bend and that of a twist.
-TEST(Spectrum, OneFaceOfALine) {
-    constexpr int kDepth = 4;
-    Shape const shape = MakeTiling(Tiling::Quads, 3, 3);
-    Sdc::Options options;
-    options.SetVtxBoundaryInterpolation(Sdc::Options::VTX_BOUNDARY_EDGE_ONLY);
-    struct Row {
-        FaceMask mask;
-        double values[5];
-    };
-    for (Row const &row : {Row{FaceMask::Smooth, {1, 0.5, 0.5, 0.25, 0.24957}},
-                           Row{FaceMask::Cosine, {1, 0.5, 0.36507, 0.30619, 0.125}}}) {
-        SCOPED_TRACE(int(row.mask));
-        auto const refiner = FarExt::TopologyRefinerFactory::Create(ShapeDescriptor(shape).Get(),
-                                                                    options, {hexagonal(row.mask)});
-        FarExt::TopologyRefiner::UniformOptions uniformOptions(kDepth + 2);
-        uniformOptions.fullTopologyInLastLevel = true;
-        ASSERT_TRUE(refiner && refiner->RefineUniform(uniformOptions));
-        FarExt::TopologyLevel const &base = refiner->GetLevel(0);
-        int vertex = 0; // keeps its number
-        while (base.GetVertexFaces(vertex).size() != 1) {
-            ++vertex;
-        }
-        std::vector<int> const verts = walkFromOneFace(refiner->GetLevel(kDepth), vertex);
-        std::vector<int> const cVerts = walkFromOneFace(refiner->GetLevel(kDepth + 2), vertex);
-        ASSERT_EQ(verts.size(), cVerts.size());
-        std::map<int, int> numbers;
-        std::vector<Combination> values(std::size_t(refiner->GetLevel(kDepth).GetNumVertices()));
-        for (std::size_t i = 0; i < verts.size(); ++i) {
-            numbers[verts[i]] = int(i);
-        }
-        for (std::size_t i = 0; i < values.size(); ++i) {
-            values[i].weights[int(i)] = 1;
-        }
-        FarExt::PrimvarRefinerReal<double> const primvars(*refiner);
-        for (int depth = kDepth + 1; depth <= kDepth + 2; ++depth) {
-            std::vector<Combination> next(std::size_t(refiner->GetLevel(depth).GetNumVertices()));
-            primvars.Interpolate(depth, values, next);
-            values.swap(next);
-        }
-        Eigen::MatrixXd matrix =
-            Eigen::MatrixXd::Zero(Eigen::Index(verts.size()), Eigen::Index(verts.size()));
-        for (std::size_t i = 0; i < cVerts.size(); ++i) {
-            for (auto const &[source, weight] : values[std::size_t(cVerts[i])].weights) {
-                ASSERT_EQ(numbers.count(source), 1U);
-                matrix(Eigen::Index(i), numbers.at(source)) = weight;
-            }
-        }
-        std::vector<double> moduli;
-        Eigen::VectorXcd const eigenvalues =
-            Eigen::EigenSolver<Eigen::MatrixXd>(matrix).eigenvalues();
-        for (std::complex<double> value : eigenvalues) {
-            moduli.push_back(std::sqrt(std::abs(value)));
-        }
-        std::sort(moduli.rbegin(), moduli.rend());
-        ASSERT_GE(moduli.size(), 12U);
-        for (std::size_t i = 0; i < 5; ++i) {
-            EXPECT_NEAR(moduli[i], row.values[i], 1e-5) << i;
-        }
     }
 }
 

@@ -26,6 +26,17 @@ constexpr std::size_t kEnough = 1 << 20;
 // Of a triangle.
 Indices makePoints(int first) { return {first, first + 1, first + 2, 0, 0, 1, 2, 3, 4}; }
 
+/// Adds a face to those that are kept.
+template <typename TYPE>
+auto add(BfrExt::internal::KeptFaces<TYPE> &kept, std::size_t kind, int face, TYPE const &type,
+         int size, Indices const &points) {
+    std::vector<std::byte> bytes;
+    BfrExt::internal::FacePoints<TYPE> own(bytes);
+    own.resize(points.size());
+    std::copy(points.begin(), points.end(), own.data());
+    return kept.Add(kind, face, own.Make(type, size));
+}
+
 struct Found {
     Indices indices; // control points
     std::vector<double> point;
@@ -83,15 +94,15 @@ TEST(KeptFacesTest, AreThoseThatWereAddedTwice) {
     Kept kept(nullptr, 5, 2, kEnough);
     EXPECT_FALSE(kept.Find(1, 3));
     Indices const points = makePoints(10);
-    EXPECT_FALSE(kept.Add(1, 3, 7, 3, points));
+    EXPECT_FALSE(add(kept, 1, 3, 7, 3, points));
     EXPECT_FALSE(kept.Find(1, 3));
-    Kept::Face const *const face = kept.Add(1, 3, 7, 3, points);
+    Kept::Face const *const face = add(kept, 1, 3, 7, 3, points);
     ASSERT_TRUE(face);
     EXPECT_EQ(face->type, 7);
     EXPECT_EQ(face->size, 3);
     EXPECT_EQ(face->numPoints, 3);
     EXPECT_EQ(Indices(face->GetPoints(), face->GetPoints() + points.size()), points);
-    EXPECT_EQ(kept.Add(1, 3, 8, 3, makePoints(20)), face);
+    EXPECT_EQ(add(kept, 1, 3, 8, 3, makePoints(20)), face);
     EXPECT_EQ(kept.Find(1, 3), face);
     EXPECT_FALSE(kept.Find(0, 3));
     for (int const none : {-1, 2, 4, 5}) {
@@ -105,8 +116,8 @@ TEST(KeptFacesTest, TakeNoMoreMemoryThanTheyMay) {
         Kept kept(nullptr, kNumFaces, 1, memory);
         std::size_t numKept = 0;
         for (int face = 0; face < kNumFaces; ++face) {
-            EXPECT_FALSE(kept.Add(0, face, face, 3, makePoints(face)));
-            Kept::Face const *const added = kept.Add(0, face, face, 3, makePoints(face));
+            EXPECT_FALSE(add(kept, 0, face, face, 3, makePoints(face)));
+            Kept::Face const *const added = add(kept, 0, face, face, 3, makePoints(face));
             ASSERT_EQ(kept.Find(0, face), added);
             numKept += added ? 1 : 0;
         }
@@ -124,11 +135,11 @@ TEST(KeptFacesTest, OfOneKindAreKeptWhereAnotherHasNoMemory) {
     constexpr std::size_t kSlots = kNumFaces * sizeof(void *);
     Kept kept(nullptr, kNumFaces, 2, 2 * kSlots - 1);
     Indices const points = makePoints(7);
-    kept.Add(0, 3, 1, 3, points);
+    add(kept, 0, 3, 1, 3, points);
     for (int round = 0; round < 3; ++round) {
-        EXPECT_EQ(kept.Add(1, 3, 1, 3, points), nullptr);
+        EXPECT_EQ(add(kept, 1, 3, 1, 3, points), nullptr);
     }
-    EXPECT_NE(kept.Add(0, 3, 1, 3, points), nullptr);
+    EXPECT_NE(add(kept, 0, 3, 1, 3, points), nullptr);
     EXPECT_NE(kept.Find(0, 3), nullptr);
 }
 
@@ -140,8 +151,8 @@ TEST(KeptFacesTest, LieWhereTheirTypesMay) {
     for (int face = 0; face < 100; ++face) {
         Indices points(std::size_t(face == 50 ? 30001 : 7 + face));
         std::iota(points.begin(), points.end(), face);
-        kept.Add(0, face, &type, 3, points);
-        KeptPointers::Face const *const added = kept.Add(0, face, &type, 3, points);
+        add(kept, 0, face, &type, 3, points);
+        KeptPointers::Face const *const added = add(kept, 0, face, &type, 3, points);
         ASSERT_TRUE(added);
         EXPECT_EQ(reinterpret_cast<std::uintptr_t>(added) % alignof(KeptPointers::Face), 0u);
         EXPECT_EQ(added->type, &type);
@@ -155,7 +166,7 @@ TEST(KeptFacesTest, AreTheSameForAllThreads) {
     Kept kept(nullptr, kNumFaces, 1, 8 * kEnough);
     std::vector<Kept::Face const *> added[kNumThreads];
     for (int face = 0; face < kNumFaces; ++face) {
-        ASSERT_FALSE(kept.Add(0, face, face, 3, makePoints(face)));
+        ASSERT_FALSE(add(kept, 0, face, face, 3, makePoints(face)));
     }
     // Each face is added by all at once.
     std::vector<std::atomic<int>> numReady(kNumFaces);
@@ -170,7 +181,7 @@ TEST(KeptFacesTest, AreTheSameForAllThreads) {
                 while (ready < kNumThreads) {
                     std::this_thread::yield();
                 }
-                ofThread.push_back(kept.Add(0, face, face, 3, points));
+                ofThread.push_back(add(kept, 0, face, face, 3, points));
             }
         });
     }

@@ -255,25 +255,45 @@ TEST(LevelTessellation, IsInvalidForWrongArguments) {
     EXPECT_EQ(LevelTessellation(quad, -1).GetNumBoundaryCoords(), 0);
 }
 
-TEST(LevelTessellation, IsInvalidWhereItIsMovedFrom) {
+TEST(LevelTessellation, CopiesStayWhenItIsAssigned) {
     for (bool const isTree : {false, true}) {
-        LevelTessellation from = isTree ? LevelTessellation(BfrExt::CellTree(4, 2))
-                                        : LevelTessellation(Parameterization(4), 2);
-        int const numFacets = from.GetNumFacets();
-        LevelTessellation const to = std::move(from);
-        EXPECT_TRUE(to.IsValid());
-        EXPECT_EQ(to.GetNumFacets(), numFacets);
+        LevelTessellation tessellation = isTree ? LevelTessellation(BfrExt::CellTree(4, 2))
+                                                : LevelTessellation(Parameterization(4), 2);
+        LevelTessellation const copy = tessellation;
+        tessellation = LevelTessellation(Parameterization(3), 0);
+        EXPECT_EQ(tessellation.GetNumCoords(), 3);
+        EXPECT_TRUE(copy.IsValid());
+        EXPECT_EQ(copy.GetNumFacets(), 42);
+        EXPECT_EQ(copy.GetNumCoords(), 28);
+    }
+}
+
+TEST(Surface, IsInvalidWhereItIsMovedFrom) {
+    Shape const &shape = GetShape("cube");
+    auto const refiner = CreateRefiner(shape, ReferenceMask::Smooth, 0);
+    auto const factory = BfrExt::SurfaceFactory::Create(*refiner);
+    LevelTessellation const tessellation(Parameterization(4), 2);
+    std::vector<std::vector<double>> results;
+    // Of a face that is its own, and of one that the factory has kept.
+    for (int round = 0; round < 2; ++round) {
+        BfrExt::Surface<double> from;
+        ASSERT_TRUE(factory->InitVertexSurface(0, &from));
+        BfrExt::Surface<double> const copy = from;
+        BfrExt::Surface<double> const to = std::move(from);
         // NOLINTBEGIN(bugprone-use-after-move, clang-analyzer-cplusplus.Move)
         EXPECT_FALSE(from.IsValid());
-        EXPECT_EQ(from.GetNumFacets(), 0);
-        EXPECT_EQ(from.GetNumCoords(), 0);
-        SurfaceSet<double> const surfaces(
-            *CreateRefiner(GetShape("cube"), ReferenceMask::Smooth, 0), GetShape("cube").positions);
-        std::vector<double> const control(3 * std::size_t(surfaces[0].GetNumControlPoints()), 1);
+        EXPECT_EQ(from.GetNumControlPoints(), 0);
         double untouched = 77;
-        surfaces[0].Evaluate(from, control.data(), 3, &untouched, 3);
+        from.Evaluate(tessellation, shape.positions.data(), 3, &untouched, 3);
         EXPECT_EQ(untouched, 77);
         // NOLINTEND(bugprone-use-after-move, clang-analyzer-cplusplus.Move)
+        for (BfrExt::Surface<double> const *const surface : {&copy, &to}) {
+            std::vector<double> control(3 * std::size_t(surface->GetNumControlPoints()));
+            surface->GatherControlPoints(shape.positions.data(), 3, control.data(), 3);
+            results.emplace_back(3 * std::size_t(tessellation.GetNumCoords()));
+            surface->Evaluate(tessellation, control.data(), 3, results.back().data(), 3);
+            EXPECT_EQ(results.back(), results.front());
+        }
     }
 }
 

@@ -7,10 +7,10 @@
 #include "surfaceCase.h"
 #include "surfaceFixture.h"
 
-#include "bfr_ext/plySink.h"
 #include "regression/far_ext/referenceMatch.h"
 #include "regression/shapes/featureShapes.h"
 #include "regression/shapes/shapeDescriptor.h"
+#include "tools/stream/plySink.h"
 
 #include <gtest/gtest.h>
 
@@ -27,10 +27,10 @@ namespace OpenSubdivHex::Regression::patchNumberingTest {
 
 using BfrExt::LevelTessellation;
 using BfrExt::PatchLevels;
-using BfrExt::PatchNumbering;
 using BfrExt::PatchStream;
-using BfrExt::PlySink;
 using BfrExt::SurfaceFactory;
+using Tools::PatchNumbering;
+using Tools::PlySink;
 
 namespace {
 
@@ -291,6 +291,7 @@ TEST(PlySinkTest, AnyThreadsAndSharesWriteEveryByteOnce) {
                                                   numFaces * share / numShares,
                                                   numFaces * (share + 1) / numShares, *sink));
                 }
+                ASSERT_TRUE(sink->Flush());
                 ASSERT_TRUE(sink->WriteHeader());
                 ASSERT_EQ(file.bytes.size(), sink->GetFileSize());
                 ASSERT_EQ(file.counts, std::vector<int>(file.bytes.size(), 1));
@@ -317,7 +318,7 @@ TEST(PlySinkTest, FacetsMayHaveManyCorners) {
     MemoryFile file;
     auto const sink = PlySink<double>::Create(*numbering, file.GetWrite());
     ASSERT_TRUE(sink->WriteHeader());
-    ASSERT_TRUE(stream.Run(shape.positions.data(), 3, *sink));
+    ASSERT_TRUE(stream.Run(shape.positions.data(), 3, *sink) && sink->Flush());
     EXPECT_NE(file.bytes.find("property list int int"), std::string::npos);
     EXPECT_EQ(file.bytes.size(), sink->GetFileSize());
     std::size_t place = file.bytes.size() - std::size_t(6 * (4 * 171 + 1) * 4);
@@ -328,7 +329,8 @@ TEST(PlySinkTest, EndsTheStreamWhenWritingFails) {
     Shape const &shape = GetShape("cube");
     auto const refiner = CreateRefiner(shape, ReferenceMask::Smooth, 0, Sdc::Options());
     auto const factory = SurfaceFactory::Create(*refiner);
-    PatchStream<double> const stream(*factory, PatchLevels(1));
+    // Each face has more than the sink gathers.
+    PatchStream<double> const stream(*factory, PatchLevels(9));
     auto const numbering = PatchNumbering::Create(stream);
     int numWrites = 0;
     ThreadsScope const threads(1);
@@ -340,6 +342,30 @@ TEST(PlySinkTest, EndsTheStreamWhenWritingFails) {
     FarExt::CallStatus status;
     EXPECT_FALSE(PatchNumbering::Create(wrong, &status));
     EXPECT_EQ(status.GetCode(), FarExt::StatusCode::InvalidArgument);
+}
+
+// Whole faces, one behind the other: all points inside, and all facets, are one piece.
+TEST(PlySinkTest, WritesWhatFollowsOneAnotherAtOnce) {
+    Shape const &shape = GetShape("cube");
+    auto const refiner = CreateRefiner(shape, ReferenceMask::Smooth, 0, Sdc::Options());
+    auto const factory = SurfaceFactory::Create(*refiner);
+    PatchStream<double> const stream(*factory, PatchLevels(4));
+    auto const numbering = PatchNumbering::Create(stream);
+    MemoryFile file;
+    int numWrites = 0;
+    auto const write = file.GetWrite();
+    auto const sink = PlySink<double>::Create(
+        *numbering, [&](std::uint64_t offset, char const *bytes, std::size_t size) {
+            ++numWrites;
+            return write(offset, bytes, size);
+        });
+    ASSERT_TRUE(stream.Run(shape.positions.data(), 3, *sink));
+    EXPECT_EQ(numWrites, 0);
+    ASSERT_TRUE(sink->Flush());
+    EXPECT_EQ(numWrites, 1);
+    ASSERT_TRUE(sink->Flush() && sink->WriteHeader());
+    EXPECT_EQ(numWrites, 2);
+    EXPECT_EQ(file.counts, std::vector<int>(sink->GetFileSize(), 1));
 }
 
 TEST(PlySinkTest, TakesPointsOfThreeNumbersAlone) {
@@ -361,7 +387,7 @@ TEST(PlySinkTest, TakesPointsOfThreeNumbersAlone) {
         EXPECT_TRUE(status.IsOk());
         EXPECT_EQ(numWrites, 0);
     }
-    EXPECT_TRUE(stream.Run(points.data(), 3, *sink));
+    EXPECT_TRUE(stream.Run(points.data(), 3, *sink) && sink->Flush());
     EXPECT_GT(numWrites, 0);
 }
 

@@ -3,7 +3,7 @@
 #define OPENSUBDIVHEX_REGRESSION_BFR_EXT_STREAM_FIXTURE_H
 
 #include "bfr_ext/patchStream.h"
-#include "far_ext/threads.h"
+#include "far_ext/executor.h"
 
 #include <random>
 #include <vector>

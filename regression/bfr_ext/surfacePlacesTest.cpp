@@ -7,7 +7,7 @@
 
 #include "bfr_ext/cell/facePatches.h"
 #include "bfr_ext/surfacePlaces.h"
-#include "far_ext/threads.h"
+#include "far_ext/executor.h"
 
 #include "regression/shapes/featureShapes.h"
 #include "regression/shapes/torus.h"

@@ -5,8 +5,8 @@
 #include "surfaceCase.h"
 #include "surfaceFixture.h"
 
-#include "far_ext/limitStencilTableFactory.h"
 #include "far_ext/primvarRefiner.h"
+#include "far_ext/stencilTableFactory.h"
 #include "regression/far_ext/referenceMatch.h"
 #include "regression/shapes/featureShapes.h"
 #include "regression/shapes/flatShapes.h"

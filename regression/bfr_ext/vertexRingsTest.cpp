@@ -264,7 +264,7 @@ private:
     }
 
     CellRules const _rules;
-    bool const _isInner = _rules.schemeOptions.faceMask == FarExt::FaceMask::Smooth;
+    bool const _isInner = _rules.hexSchemeOptions.faceMask == FarExt::FaceMask::Smooth;
     CellTypes _types;
 };
 
@@ -272,7 +272,7 @@ class VertexRingsTest : public testing::TestWithParam<FarExt::FaceMask> {
 protected:
     CellRules makeRules() const {
         CellRules rules;
-        rules.schemeOptions.faceMask = GetParam();
+        rules.hexSchemeOptions.faceMask = GetParam();
         return rules;
     }
 };

@@ -107,8 +107,8 @@ std::set<std::vector<int>> normalized(std::vector<std::vector<int>> faces,
 /// Positions by a stencil table of double precision.
 Polygons refineByLibrary(Shape const &shape, int level) {
     FarExt::TopologyRefinerFactory::Options options;
-    options.schemeOptions.faceMask = FarExt::FaceMask::Cosine;
-    options.schemeOptions.schemeType = FarExt::SchemeType::DooSabin;
+    options.hexSchemeOptions.faceMask = FarExt::FaceMask::Cosine;
+    options.hexSchemeOptions.schemeType = FarExt::SchemeType::DooSabin;
     ShapeDescriptor const descriptor(shape);
     auto const refiner =
         FarExt::TopologyRefinerFactory::Create(descriptor.Get(), Sdc::Options(), options);

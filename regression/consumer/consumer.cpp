@@ -8,8 +8,8 @@
 #include <far_ext/stencilTableFactory.h>
 #include <far_ext/topologyRefinerFactory.h>
 #include <far_ext/version.h>
-#include <osd_ext/stencilEvaluation.h>
-#include <osd_ext/triangleIndices.h>
+#include <osd_ext/polygonIndices.h>
+#include <osd_ext/stencilEvaluator.h>
 
 #include <opensubdiv/far/stencilTableFactory.h>
 #include <opensubdiv/far/topologyDescriptor.h>

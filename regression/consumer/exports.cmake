@@ -5,14 +5,14 @@
 # Checks that a shared library exports its public API, of which public is a part of a mangled name,
 # and of what is internal no more than the inline code of public headers and other layers call.
 set(called AllocateArray FreeArray PrepareArray RangeQueue ForEachRange Report InsertUnique SortUnique
-  RefinementRules GetRules FaceRule TruncationMask PrimvarRows PrimvarLimitRows
+  RefinementRules GetRules FaceRule TruncationMask
   LimitRows CheckLimitLevel LimitOrigins LatticePatch LatticeFaces PlainFaces
   RegularFaces MakeFaceParameterization FindInPlane FindFaceCoords FindCellPatchPoints
-  FindUniformSources GetStepsToLimit GatherBaseCell FindBaseCellTurns GatherBorder RefineCell
+  GetStepsToLimit GatherBaseCell FindBaseCellTurns GatherBorder RefineCell
   UseNextMasks ComesApart GatherFanItems FindCornerLimits PatchRefinement GetVertexMarks StepRowBack MakePlainBaseCell IndexMap
   Device MakeDeviceLimit MakeDeviceRefinements
-  CheckChannel CheckStencilMode GetChannelInterpolation GetModeInterpolation GetChosenNumThreads
-  CheckLevel CheckDescriptors CheckPatchTask EvaluatePatches)
+  CheckChannel CheckStencilMode GetChannelInterpolation GetModeInterpolation
+  CheckLevel CheckDescriptors)
 
 execute_process(COMMAND ${nm} --dynamic --defined-only --format=posix ${library}
   OUTPUT_VARIABLE symbols COMMAND_ERROR_IS_FATAL ANY)

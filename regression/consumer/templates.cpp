@@ -4,18 +4,15 @@
 // switches warnings on.  It is compiled, and does not run.
 
 #include <bfr_ext/surface.h>
-#include <far_ext/limitStencilTableFactory.h>
-#include <far_ext/meshRefinerFactory.h>
 #include <far_ext/primvarRefiner.h>
 #include <far_ext/stencilTableFactory.h>
+#include <far_ext/topologyRefinerFactory.h>
 #include <osd_ext/cpuEvaluator.h>
-#include <osd_ext/ompEvaluator.h>
 #include <osd_ext/refinementEvaluator.h>
-#include <osd_ext/stencilEvaluation.h>
+#include <osd_ext/stencilEvaluator.h>
 #if __has_include(<osd_ext/cudaEvaluator.h>)
 #include <osd_ext/cudaEvaluator.h>
 #include <osd_ext/cudaRefinementEvaluator.h>
-#include <osd_ext/cudaVertexBuffer.h>
 #endif
 #if __has_include(<osd_ext/glRefinementEvaluator.h>)
 #include <osd_ext/glRefinementEvaluator.h>
@@ -134,8 +131,8 @@ void evaluateTables(FarExt::TopologyRefiner const &refiner, BUFFER *buffer) {
 }
 template void evaluateTables<OsdExt::CpuEvaluator>(FarExt::TopologyRefiner const &,
                                                    Osd::CpuVertexBuffer *);
-template void evaluateTables<OsdExt::OmpEvaluator>(FarExt::TopologyRefiner const &,
-                                                   Osd::CpuVertexBuffer *);
+template void evaluateTables<OsdExt::ParallelEvaluator>(FarExt::TopologyRefiner const &,
+                                                        Osd::CpuVertexBuffer *);
 template void evaluateTable<OsdExt::CpuEvaluator>(Osd::CpuVertexBuffer *,
                                                   OsdExt::CompactStencilTable const &);
 

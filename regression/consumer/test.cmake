@@ -68,6 +68,10 @@ if(OPENSUBDIVHEX_PKG_CONFIG AND UNIX)
 endif()
 set_tests_properties(consumer.install PROPERTIES FIXTURES_SETUP installed)
 set_tests_properties(consumer.build PROPERTIES FIXTURES_REQUIRED installed)
+add_test(NAME consumer.guide
+  COMMAND ${CMAKE_COMMAND} -D folder=${consumerDir}/prefix/${CMAKE_INSTALL_DOCDIR}
+    -P ${PROJECT_SOURCE_DIR}/regression/guide/links.cmake)
+set_tests_properties(consumer.guide PROPERTIES FIXTURES_REQUIRED installed)
 # What compiles the headers: those of OpenSubdiv are the system's, ours are not.
 get_target_property(opensubdivDirs OpenSubdiv::osdCPU INTERFACE_INCLUDE_DIRECTORIES)
 list(REMOVE_ITEM opensubdivDirs ${CMAKE_CXX_IMPLICIT_INCLUDE_DIRECTORIES})

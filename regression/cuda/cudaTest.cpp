@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // The evaluators of CUDA against those of the processor, where there is a device.
-#include "far_ext/limitStencilTableFactory.h"
 #include "far_ext/stencilTableFactory.h"
 #include "osd_ext/cpuEvaluator.h"
 #include "osd_ext/cudaEvaluator.h"
 #include "osd_ext/cudaRefinementEvaluator.h"
-#include "osd_ext/cudaVertexBuffer.h"
 #include "regression/device/deviceEvaluatorTest.h"
 #include "stencilsByThread.h"
 

@@ -8,8 +8,8 @@
 #include "hostEvaluator.h"
 
 #include "far_ext/topologyRefinerFactory.h"
+#include "osd_ext/polygonIndices.h"
 #include "osd_ext/refinementEvaluator.h"
-#include "osd_ext/triangleIndices.h"
 #include "regression/shapes/featureShapes.h"
 #include "regression/shapes/meshOperations.h"
 #include "regression/shapes/shapeDescriptor.h"
@@ -49,7 +49,7 @@ MakeRefiner(Shape const &shape, int level, Sdc::Options::VtxBoundaryInterpolatio
     Sdc::Options sdcOptions;
     sdcOptions.SetVtxBoundaryInterpolation(boundary);
     FarExt::TopologyRefinerFactory::Options options;
-    options.schemeOptions = schemeOptions;
+    options.hexSchemeOptions = schemeOptions;
     ShapeDescriptor const descriptor(shape);
     FarExt::CallStatus status;
     auto refiner =

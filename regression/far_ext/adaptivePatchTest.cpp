@@ -4,7 +4,7 @@
 #include "patchFixture.h"
 #include "referenceMatch.h"
 
-#include "far_ext/limitStencilTableFactory.h"
+#include "far_ext/stencilTableFactory.h"
 
 #include <gtest/gtest.h>
 

@@ -4,9 +4,8 @@
 // own, since it replaces operator new.
 #include "referenceMatch.h"
 
-#include "far_ext/limitStencilTableFactory.h"
+#include "far_ext/executor.h"
 #include "far_ext/stencilTableFactory.h"
-#include "far_ext/threads.h"
 
 #include <gtest/gtest.h>
 

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// The memory of levels: buffers, arrays placed in one, and writing past the caches; and sets of
-// indices.
-#include "far_ext/vtr/arrayWriter.h"
+// The memory of levels: buffers, and arrays placed in one; and sets of indices.
 #include "far_ext/vtr/indexSet.h"
 #include "far_ext/vtr/pagedArray.h"
 
@@ -21,12 +19,9 @@
 namespace OpenSubdivHex::Regression::arrayTest {
 
 using FarExt::internal::Buffer;
-using FarExt::internal::IsResident;
 using FarExt::internal::kCacheLine;
 using FarExt::internal::PlaceArrays;
 using FarExt::internal::ResizeLarge;
-using FarExt::internal::WriteArray;
-using FarExt::internal::WriteSequence;
 
 TEST(Buffer, KeepsItsMemoryUntilItNeedsMore) {
     Buffer<int> buffer;
@@ -130,78 +125,6 @@ TEST(PlaceArrays, LeavesEveryArrayItsOwnAlignedPlace) {
         }
     }
 }
-
-namespace {
-
-/// Writes count groups of SIZE numbers from array[start] on and checks them, and that nothing else
-/// is touched.
-template <int SIZE, typename T>
-void expectGroups(std::size_t start, int count, bool pastCaches) {
-    std::vector<T> array(start + std::size_t(SIZE * count) + 100, T(7));
-    WriteArray<SIZE>(array.data() + start, count, pastCaches, [](T *entries, int i) {
-        for (int k = 0; k < SIZE; ++k) {
-            entries[k] = T(100 + SIZE * i + k);
-        }
-    });
-    for (std::size_t i = 0; i < array.size(); ++i) {
-        bool const written = i >= start && i < start + std::size_t(SIZE * count);
-        ASSERT_EQ(array[i], written ? T(100 + i - start) : T(7))
-            << i << " from " << start << ", " << count << " groups of " << SIZE;
-    }
-}
-
-} // namespace
-
-// Counts below, at and above the block that groups are collected in, from any place in a line.
-TEST(WriteArray, WritesWhatItIsToldAndNoMore) {
-    for (bool pastCaches : {false, true}) {
-        for (std::size_t start = 0; start < 40; ++start) {
-            for (int count : {0, 1, 5, 16, 17, 21, 22, 43, 192, 193, 384, 3000}) {
-                expectGroups<1, int>(start, count, pastCaches);
-                expectGroups<12, int>(start, count, pastCaches);
-                expectGroups<18, std::uint16_t>(start, count, pastCaches);
-            }
-        }
-    }
-}
-
-// Groups of and other than whole vectors.
-template <int SIZE>
-void expectSequence(int count, bool pastCaches) {
-    std::vector<int> array(std::size_t(SIZE * count) + 100, -1);
-    WriteSequence<SIZE>(array.data() + 1, count, pastCaches, 10, [](int *entries) {
-        for (int k = 0; k < SIZE; ++k) {
-            entries[k] = 5 - k;
-        }
-    });
-    for (int i = 0; i < int(array.size()); ++i) {
-        bool const written = i >= 1 && i <= SIZE * count;
-        ASSERT_EQ(array[i], written ? 5 - (i - 1) % SIZE + (i - 1) / SIZE * 10 : -1)
-            << i << ", " << count << " groups of " << SIZE;
-    }
-}
-
-TEST(WriteSequence, GrowsFromGroupToGroup) {
-    for (bool pastCaches : {false, true}) {
-        for (int count : {0, 1, 2, 3, 4, 5, 7, 8, 100, 1001}) {
-            expectSequence<1>(count, pastCaches);
-            expectSequence<3>(count, pastCaches);
-            expectSequence<12>(count, pastCaches);
-            expectSequence<18>(count, pastCaches);
-        }
-    }
-}
-
-#if defined(__linux__)
-TEST(IsResident, OnceWritten) {
-    constexpr std::size_t kSize = std::size_t(64) << 20; // malloc takes new pages for it
-    Buffer<std::byte> buffer;
-    buffer.Resize(kSize);
-    EXPECT_FALSE(IsResident(buffer.data(), kSize));
-    std::fill_n(buffer.data(), kSize, std::byte(0));
-    EXPECT_TRUE(IsResident(buffer.data(), kSize));
-}
-#endif
 
 TEST(IndexSet, SortsAndNumbersIndicesOfAnyDensity) {
     for (int const end : {1, 64, 512, 513, 100000}) {

@@ -3,8 +3,8 @@
 // The same bits for any number of threads.
 #include "referenceMatch.h"
 
+#include "far_ext/executor.h"
 #include "far_ext/stencilTableFactory.h"
-#include "far_ext/threads.h"
 #include "far_ext/vtr/hierarchy.h"
 #include "regression/shapes/flatShapes.h"
 

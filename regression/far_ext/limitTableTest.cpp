@@ -4,9 +4,9 @@
 // vertices.
 #include "referenceMatch.h"
 
-#include "far_ext/limitStencilTableFactory.h"
+#include "far_ext/executor.h"
 #include "far_ext/primvarRefiner.h"
-#include "far_ext/threads.h"
+#include "far_ext/stencilTableFactory.h"
 #include "regression/shapes/featureShapes.h"
 #include "regression/shapes/shapeDescriptor.h"
 #include "regression/shapes/torus.h"

@@ -5,8 +5,8 @@
 #include "sharpSector.h"
 #include "valueLevels.h"
 
-#include "far_ext/limitStencilTableFactory.h"
-#include "far_ext/threads.h"
+#include "far_ext/executor.h"
+#include "far_ext/stencilTableFactory.h"
 #include "regression/reference/largestValue.h"
 #include "regression/shapes/featureShapes.h"
 #include "regression/shapes/shapeDescriptor.h"
@@ -513,6 +513,26 @@ TEST(Limit, SameBitsForAnyNumberOfThreads) {
     }
 }
 
+TEST(Limit, IsOfTheLastLevelByDefault) {
+    auto const refiner =
+        FarExt::TopologyRefinerFactory::Create(ShapeDescriptor(GetShape("cube")).Get());
+    FarExt::TopologyRefiner::UniformOptions uniformOptions(2);
+    uniformOptions.fullTopologyInLastLevel = true;
+    ASSERT_TRUE(refiner->RefineUniform(uniformOptions));
+    FarExt::LimitStencilTableFactory::Options options;
+    auto const byDefault = FarExt::LimitStencilTableFactory::Create(*refiner, options);
+    ASSERT_TRUE(byDefault);
+    options.level = 2;
+    auto const ofLast = FarExt::LimitStencilTableFactory::Create(*refiner, options);
+    EXPECT_EQ(byDefault->GetNumStencils(), refiner->GetLevel(2).GetNumVertices());
+    EXPECT_EQ(byDefault->GetControlIndices(), ofLast->GetControlIndices());
+    EXPECT_EQ(byDefault->GetWeights(), ofLast->GetWeights());
+    EXPECT_EQ(byDefault->GetDuWeights(), ofLast->GetDuWeights());
+    options.level = 0;
+    auto const ofControlVertices = FarExt::LimitStencilTableFactory::Create(*refiner, options);
+    EXPECT_EQ(ofControlVertices->GetNumStencils(), refiner->GetLevel(0).GetNumVertices());
+}
+
 TEST(Limit, RefusesBadOptions) {
     auto const refiner =
         FarExt::TopologyRefinerFactory::Create(ShapeDescriptor(GetShape("cube")).Get());
@@ -527,8 +547,8 @@ TEST(Limit, RefusesBadOptions) {
             << status.GetErrorMessage();
     };
     FarExt::LimitStencilTableFactory::Options options;
-    options.level = -1;
-    expectRefused(options, "level -1 is not one of the levels 0 to 2");
+    options.level = -2;
+    expectRefused(options, "level -2 is not one of the levels 0 to 2");
     options.level = 3;
     expectRefused(options, "level 3 is not one of the levels 0 to 2");
     options.level = 2;
@@ -543,7 +563,7 @@ TEST(Limit, RefusesBadOptions) {
 
 TEST(Limit, IsOfHexagonalStepsAlone) {
     FarExt::TopologyRefinerFactory::Options refinerOptions;
-    FarExt::HexSchemeOptions &scheme = refinerOptions.schemeOptions;
+    FarExt::HexSchemeOptions &scheme = refinerOptions.hexSchemeOptions;
     scheme.faceMask = FarExt::FaceMask::Smooth;
     auto const createRefiner = [&] {
         ShapeDescriptor const descriptor(GetShape("prism5"));

@@ -4,7 +4,7 @@
 #include "referenceMatch.h"
 #include "valueLevels.h"
 
-#include "far_ext/limitStencilTableFactory.h"
+#include "far_ext/stencilTableFactory.h"
 #include "regression/shapes/shapeDescriptor.h"
 
 #include <gtest/gtest.h>
@@ -386,7 +386,7 @@ TEST(LimitVertex, RandomFacesHaveSoundTables) {
             shape.cornerSharpness.push_back(choose(2) ? kInfinite : 0.25f * choose(12));
         }
         FarExt::TopologyRefinerFactory::Options options;
-        options.schemeOptions.faceMask = ToFaceMask(kMasks[choose(3)]);
+        options.hexSchemeOptions.faceMask = ToFaceMask(kMasks[choose(3)]);
         auto const refiner = FarExt::TopologyRefinerFactory::Create(
             ShapeDescriptor(shape).Get(), makeOptions(kBoundaries[choose(3)]), options);
         if (!refiner) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "far_ext/mask.h"
+#include "far_ext/rules/mask.h"
 
 #include <gtest/gtest.h>
 

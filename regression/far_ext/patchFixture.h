@@ -2,7 +2,6 @@
 #ifndef OPENSUBDIVHEX_REGRESSION_FAR_EXT_PATCH_FIXTURE_H
 #define OPENSUBDIVHEX_REGRESSION_FAR_EXT_PATCH_FIXTURE_H
 
-#include "far_ext/patchMap.h"
 #include "far_ext/patchTableFactory.h"
 #include "regression/reference/reference.h"
 

@@ -5,9 +5,8 @@
 #include "referenceMatch.h"
 #include "sharpSector.h"
 
-#include "far_ext/limitStencilTableFactory.h"
+#include "far_ext/executor.h"
 #include "far_ext/stencilTableFactory.h"
-#include "far_ext/threads.h"
 #include "regression/shapes/featureShapes.h"
 #include "regression/shapes/shapeDescriptor.h"
 

@@ -37,8 +37,8 @@ std::unique_ptr<FarExt::TopologyRefiner> CreateRefiner(Shape const &shape, Refer
                                                        int level, Sdc::Options sdcOptions,
                                                        FarExt::HexSchemeOptions schemeOptions) {
     FarExt::TopologyRefinerFactory::Options options;
-    options.schemeOptions = schemeOptions;
-    options.schemeOptions.faceMask = ToFaceMask(mask);
+    options.hexSchemeOptions = schemeOptions;
+    options.hexSchemeOptions.faceMask = ToFaceMask(mask);
     FarExt::CallStatus status;
     ShapeDescriptor const descriptor(shape);
     auto refiner =

@@ -88,7 +88,7 @@ TEST_F(StatusTest, OtherSchemesTakeSharpBorders) {
     ShapeDescriptor const descriptor(shape);
     for (HexSchemeOptions const &scheme : kOtherSchemes) {
         TopologyRefinerFactory::Options options;
-        options.schemeOptions = scheme;
+        options.hexSchemeOptions = scheme;
         CallStatus status;
         auto const refiner =
             TopologyRefinerFactory::Create(descriptor.Get(), sdcOptions, options, &status);
@@ -154,7 +154,7 @@ TEST_F(StatusTest, OtherSchemesRefuseCoplanarRefinement) {
     ShapeDescriptor const descriptor(cube);
     for (HexSchemeOptions const &scheme : kOtherSchemes) {
         TopologyRefinerFactory::Options options;
-        options.schemeOptions = scheme;
+        options.hexSchemeOptions = scheme;
         auto const refiner =
             TopologyRefinerFactory::Create(descriptor.Get(), Sdc::Options(), options);
         ASSERT_TRUE(refiner && refiner->RefineUniform(1));
@@ -185,7 +185,7 @@ TEST_F(StatusTest, TooManyLevelsOfOtherSchemes) {
     ShapeDescriptor const descriptor(cube);
     for (Case const &expected : cases) {
         TopologyRefinerFactory::Options options;
-        options.schemeOptions = expected.scheme;
+        options.hexSchemeOptions = expected.scheme;
         auto const refiner =
             TopologyRefinerFactory::Create(descriptor.Get(), Sdc::Options(), options);
         ASSERT_TRUE(refiner->RefineUniform(2));
@@ -208,7 +208,7 @@ TEST_F(StatusTest, LevelsThatDoNotGrowHaveALast) {
     ShapeDescriptor const descriptor(GetShape("polygon3"));
     for (FarExt::SchemeType scheme : {FarExt::SchemeType::DooSabin, FarExt::SchemeType::TriHex}) {
         TopologyRefinerFactory::Options options;
-        options.schemeOptions.schemeType = scheme;
+        options.hexSchemeOptions.schemeType = scheme;
         auto const refiner =
             TopologyRefinerFactory::Create(descriptor.Get(), Sdc::Options(), options);
         for (int level : {TopologyRefiner::kLastLevel + 1, std::numeric_limits<int>::max()}) {
@@ -283,7 +283,7 @@ TEST_F(StatusTest, TooManyLevelsSeenFromAnyLevel) {
     // are right however many levels lie between.
     auto const create = [](Shape const &shape, HexSchemeOptions const &scheme) {
         TopologyRefinerFactory::Options options;
-        options.schemeOptions = scheme;
+        options.hexSchemeOptions = scheme;
         ShapeDescriptor const descriptor(shape);
         return TopologyRefinerFactory::Create(descriptor.Get(), Sdc::Options(), options);
     };

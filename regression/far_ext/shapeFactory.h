@@ -2,7 +2,7 @@
 #ifndef OPENSUBDIVHEX_REGRESSION_FAR_EXT_SHAPE_FACTORY_H
 #define OPENSUBDIVHEX_REGRESSION_FAR_EXT_SHAPE_FACTORY_H
 
-#include "far_ext/meshRefinerFactory.h"
+#include "far_ext/topologyRefinerFactory.h"
 #include "regression/shapes/shapes.h"
 
 /// @name Shapes as a mesh class of a user's own, which is not left-handed

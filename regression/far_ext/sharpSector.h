@@ -2,7 +2,7 @@
 #ifndef OPENSUBDIVHEX_REGRESSION_FAR_EXT_SHARP_SECTOR_H
 #define OPENSUBDIVHEX_REGRESSION_FAR_EXT_SHARP_SECTOR_H
 
-#include "far_ext/limitStencilTableFactory.h"
+#include "far_ext/stencilTableFactory.h"
 
 namespace OpenSubdivHex::Regression {
 

@@ -105,7 +105,7 @@ protected:
         ShapeDescriptor const descriptor(shape);
         for (FarExt::HexSchemeOptions const &scheme : kOtherSchemes) {
             FarExt::TopologyRefinerFactory::Options options;
-            options.schemeOptions = scheme;
+            options.hexSchemeOptions = scheme;
             FarExt::CallStatus status;
             EXPECT_FALSE(FarExt::TopologyRefinerFactory::Create(descriptor.Get(), Sdc::Options(),
                                                                 options, &status));

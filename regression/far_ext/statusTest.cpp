@@ -305,7 +305,7 @@ TEST_F(StatusTest, OptionsOutsideOfTheirEnumerationsAreNamed) {
     auto const expectNamed = [&](HexSchemeOptions scheme, Sdc::Options sdcOptions,
                                  std::string const &name) {
         TopologyRefinerFactory::Options options;
-        options.schemeOptions = scheme;
+        options.hexSchemeOptions = scheme;
         CallStatus status;
         EXPECT_FALSE(
             TopologyRefinerFactory::Create(descriptor.Get(), sdcOptions, options, &status));
@@ -343,8 +343,7 @@ TEST_F(StatusTest, OptionsOutsideOfTheirEnumerationsAreNamed) {
         expectRefusal(status, refusal);
         EXPECT_FALSE(FarExt::StencilTableFactory::CreateOfFaces(*refiner, {}, options, &status));
         expectRefusal(status, refusal);
-        EXPECT_EQ(FarExt::StencilTableFactory::EstimateSize(*refiner, options, &status).numStencils,
-                  0);
+        EXPECT_EQ(FarExt::StencilTableFactory::GetSize(*refiner, options, &status).numStencils, 0);
         expectRefusal(status, refusal);
         FarExt::StencilTableFactory::GetVerticesOfFaces(*refiner, {}, options, 0, &status);
         expectRefusal(status, refusal);

@@ -289,8 +289,8 @@ TEST(Truncation, OtherStepsRefuseLabelsThatDiffer) {
         for (FarExt::FirstStep const firstStep :
              {FarExt::FirstStep::Same, FarExt::FirstStep::TriHex, FarExt::FirstStep::Truncate}) {
             FarExt::TopologyRefinerFactory::Options factoryOptions;
-            factoryOptions.schemeOptions.schemeType = type;
-            factoryOptions.schemeOptions.firstStep = firstStep;
+            factoryOptions.hexSchemeOptions.schemeType = type;
+            factoryOptions.hexSchemeOptions.firstStep = firstStep;
             auto const refiner = FarExt::TopologyRefinerFactory::Create(
                 descriptor.Get(), Sdc::Options(), factoryOptions);
             ASSERT_TRUE(refiner);

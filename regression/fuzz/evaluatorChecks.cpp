@@ -2,9 +2,9 @@
 #include "elementBuffer.h"
 #include "oracle.h"
 
-#include "osd_ext/compactStencilTable.h"
 #include "osd_ext/cpuEvaluator.h"
 #include "osd_ext/refinementEvaluator.h"
+#include "osd_ext/stencilEvaluator.h"
 #include "regression/osd_ext/evaluators.h"
 
 #include <opensubdiv/osd/cpuVertexBuffer.h>

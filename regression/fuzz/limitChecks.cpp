@@ -2,7 +2,7 @@
 #include "elementBuffer.h"
 #include "oracle.h"
 
-#include "far_ext/limitStencilTableFactory.h"
+#include "far_ext/stencilTableFactory.h"
 #include "osd_ext/refinementEvaluator.h"
 
 #include <Eigen/Geometry>

@@ -637,9 +637,9 @@ OracleCase Shrink(OracleCase oracleCase, std::function<bool(OracleCase const &)>
 std::unique_ptr<FarExt::TopologyRefiner> CreateRefiner(OracleCase const &oracleCase,
                                                        FarExt::CallStatus *status) {
     FarExt::TopologyRefinerFactory::Options options;
-    options.schemeOptions.faceMask = ToFaceMask(oracleCase.mask);
-    options.schemeOptions.schemeType = oracleCase.schemeType;
-    options.schemeOptions.firstStep = oracleCase.firstStep;
+    options.hexSchemeOptions.faceMask = ToFaceMask(oracleCase.mask);
+    options.hexSchemeOptions.schemeType = oracleCase.schemeType;
+    options.hexSchemeOptions.firstStep = oracleCase.firstStep;
     auto refiner = FarExt::TopologyRefinerFactory::Create(ShapeDescriptor(oracleCase.shape).Get(),
                                                           oracleCase.sdcOptions, options, status);
     bool isRefined = false;

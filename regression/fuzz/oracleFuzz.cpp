@@ -4,7 +4,7 @@
 #include "apart.h"
 #include "oracle.h"
 
-#include "far_ext/threads.h"
+#include "far_ext/executor.h"
 
 #include <cstdlib>
 #include <iostream>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "oracle.h"
 
-#include "far_ext/limitStencilTableFactory.h"
+#include "far_ext/stencilTableFactory.h"
 
 #include <algorithm>
 #include <cmath>
@@ -76,6 +76,7 @@ struct Reordered {
 /// The limit points of the vertices of level 0.
 ReferenceValues limitPoints(FarExt::TopologyRefiner const &refiner, ReferenceValues const &base) {
     FarExt::LimitStencilTableFactoryReal<double>::Options options;
+    options.level = 0;
     options.generate1stDerivatives = false;
     auto const table =
         FarExt::LimitStencilTableFactoryReal<double>::Create(refiner, options, nullptr);

@@ -2,8 +2,8 @@
 #include "meshSurfaces.h"
 #include "oracle.h"
 
-#include "far_ext/limitStencilTableFactory.h"
-#include "far_ext/patchMap.h"
+#include "far_ext/patchTableFactory.h"
+#include "far_ext/stencilTableFactory.h"
 
 #include <opensubdiv/bfr/parameterization.h>
 

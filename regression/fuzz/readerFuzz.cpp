@@ -5,7 +5,7 @@
 #include "apart.h"
 #include "damagedFile.h"
 
-#include "far_ext/threads.h"
+#include "far_ext/executor.h"
 #include "far_ext/topologyRefinerFactory.h"
 #include "tools/hexrefine/evaluation.h"
 #include "tools/hexrefine/levelMesh.h"

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "meshSurfaces.h"
 
-#include "bfr_ext/patchNumbering.h"
 #include "far_ext/executor.h"
+#include "tools/stream/patchNumbering.h"
 
 #include <array>
 #include <cmath>
@@ -14,8 +14,8 @@ namespace OpenSubdivHex::Regression {
 using BfrExt::CellForest;
 using BfrExt::LevelTessellation;
 using BfrExt::PatchLevels;
-using BfrExt::PatchNumbering;
 using BfrExt::PatchStream;
+using Tools::PatchNumbering;
 
 namespace {
 

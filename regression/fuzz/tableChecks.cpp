@@ -80,12 +80,11 @@ Eigen::RowVectorXd apply(Table<REAL> const &table, int stencil, ReferenceValues 
 }
 
 template <typename REAL>
-void checkEstimate(TopologyRefiner const &refiner, Table<REAL> const &table,
-                   typename Factory<REAL>::Options const &options, std::string const &name) {
-    FarExt::StencilTableSize const size = Factory<REAL>::EstimateSize(refiner, options);
+void checkSize(TopologyRefiner const &refiner, Table<REAL> const &table,
+               typename Factory<REAL>::Options const &options, std::string const &name) {
+    FarExt::StencilTableSize const size = Factory<REAL>::GetSize(refiner, options);
     auto const numWeights = std::int64_t(table.GetWeights().size());
-    if (size.numStencils != table.GetNumStencils() || size.numWeights < numWeights ||
-        (options.factorizeIntermediateLevels && size.numWeights != numWeights)) {
+    if (size.numStencils != table.GetNumStencils() || size.numWeights != numWeights) {
         Fail(name, " was to have ", size.numStencils, " stencils and ", size.numWeights,
              " weights, and has ", table.GetNumStencils(), " and ", numWeights);
     }
@@ -210,7 +209,7 @@ void checkTable(OracleLevels const &levels, OracleLevels::Values const &values, 
     if (stencil != table->GetNumStencils()) {
         Fail(name, " has ", table->GetNumStencils(), " stencils, not ", stencil);
     }
-    checkEstimate<REAL>(refiner, *table, options, name);
+    checkSize<REAL>(refiner, *table, options, name);
     if (options.factorizeIntermediateLevels) {
         checkSelection<REAL>(levels, values, *table, options, dice);
     }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "oracle.h"
 
-#include "far_ext/limitStencilTableFactory.h"
+#include "far_ext/stencilTableFactory.h"
 #include "osd_ext/refinementEvaluator.h"
 #include "regression/osd_ext/evaluators.h"
 

@@ -4,12 +4,11 @@
 // library: against the CPU, in a context without a window.
 #include "glContext.h"
 
-#include "far_ext/limitStencilTableFactory.h"
 #include "far_ext/stencilTableFactory.h"
 #include "far_ext/topologyRefinerFactory.h"
 #include "osd_ext/cpuEvaluator.h"
 #include "osd_ext/glEvaluation.h"
-#include "osd_ext/stencilEvaluation.h"
+#include "osd_ext/stencilEvaluator.h"
 #include "regression/shapes/featureShapes.h"
 #include "regression/shapes/shapeDescriptor.h"
 

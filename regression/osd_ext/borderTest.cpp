@@ -95,7 +95,7 @@ std::unique_ptr<TopologyRefiner> refine(Patch const &patch, FarExt::FaceMask mas
     Sdc::Options sdcOptions;
     sdcOptions.SetVtxBoundaryInterpolation(Sdc::Options::VTX_BOUNDARY_EDGE_ONLY);
     FarExt::TopologyRefinerFactory::Options options;
-    options.schemeOptions.faceMask = mask;
+    options.hexSchemeOptions.faceMask = mask;
     ShapeDescriptor const descriptor(patch.shape);
     auto refiner = FarExt::TopologyRefinerFactory::Create(descriptor.Get(), sdcOptions, options);
     TopologyRefiner::UniformOptions uniform(kNumLevels);

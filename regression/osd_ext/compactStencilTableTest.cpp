@@ -3,10 +3,9 @@
 
 #include "far_ext/stencilTableFactory.h"
 #include "far_ext/topologyRefinerFactory.h"
-#include "osd_ext/compactStencilTable.h"
 #include "osd_ext/cpuEvaluator.h"
-#include "osd_ext/ompEvaluator.h"
 #include "osd_ext/stencil/stencilKernel.h"
+#include "osd_ext/stencilEvaluator.h"
 #include "regression/shapes/shapeDescriptor.h"
 
 #include <opensubdiv/far/stencilTableFactory.h>
@@ -116,7 +115,7 @@ TEST(CompactStencilTable, HasTheSameResultsBitForBit) {
                     SCOPED_TRACE("table " + std::to_string(i) + " length " +
                                  std::to_string(length));
                     expectTheSameBits<OsdExt::CpuEvaluator>(*tables[i], length, 0);
-                    expectTheSameBits<OsdExt::OmpEvaluator>(*tables[i], length, 2);
+                    expectTheSameBits<OsdExt::ParallelEvaluator>(*tables[i], length, 2);
                 }
             }
         }

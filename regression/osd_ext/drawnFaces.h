@@ -2,7 +2,7 @@
 #ifndef OPENSUBDIVHEX_REGRESSION_OSD_EXT_DRAWN_FACES_H
 #define OPENSUBDIVHEX_REGRESSION_OSD_EXT_DRAWN_FACES_H
 
-#include "osd_ext/triangleIndices.h"
+#include "osd_ext/polygonIndices.h"
 
 #include <string>
 

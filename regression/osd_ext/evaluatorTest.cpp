@@ -4,7 +4,6 @@
 #include "evaluatorWorkspace.h"
 
 #include "osd_ext/cpuEvaluator.h"
-#include "osd_ext/ompEvaluator.h"
 
 #include <limits>
 
@@ -124,7 +123,7 @@ TEST(Evaluator, BitsDependOnSimdLevelAlone) {
                     for (int const stencilsPerCall : {numStencils, numStencils * 2 / 3}) {
                         for (bool const withOffsets : {true, false}) {
                             ASSERT_NO_FATAL_FAILURE(expectSameBits(
-                                *table, EvaluatorFunctions::Of<OsdExt::OmpEvaluator>(), 1,
+                                *table, EvaluatorFunctions::Of<OsdExt::ParallelEvaluator>(), 1,
                                 stencilsPerCall, layouts[0], withOffsets));
                         }
                     }

@@ -2,7 +2,6 @@
 #include "evaluators.h"
 
 #include "osd_ext/cpuEvaluator.h"
-#include "osd_ext/ompEvaluator.h"
 
 #include <opensubdiv/osd/cpuEvaluator.h>
 #ifdef OPENSUBDIV_HAS_OPENMP
@@ -44,8 +43,8 @@ std::vector<Evaluator> const &GetOwnEvaluators() {
                               EvaluatorFunctions::Of<OsdExt::CpuEvaluator>(), level, 1});
         }
         for (int numThreads = 1; numThreads <= 8; ++numThreads) {
-            result.push_back({"OsdExt::OmpEvaluator " + std::to_string(numThreads),
-                              EvaluatorFunctions::Of<OsdExt::OmpEvaluator>(),
+            result.push_back({"OsdExt::ParallelEvaluator " + std::to_string(numThreads),
+                              EvaluatorFunctions::Of<OsdExt::ParallelEvaluator>(),
                               OsdExt::GetMaxSimdLevel(), numThreads});
         }
         return result;

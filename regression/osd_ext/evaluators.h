@@ -46,7 +46,7 @@ struct Evaluator {
     int numThreads;
 };
 
-/// Those of this library: CpuEvaluator at every SIMD level that is there, OmpEvaluator with 1 to 8
+/// Those of this library: CpuEvaluator at every SIMD level that is there, ParallelEvaluator with 1 to 8
 /// threads.
 std::vector<Evaluator> const &GetOwnEvaluators();
 

@@ -2,15 +2,13 @@
 //
 // Hosts as there are: with many threads that call at once, with threads that have numbers of
 // threads of their own, and with child processes.
-#include "far_ext/limitStencilTableFactory.h"
+#include "far_ext/executor.h"
 #include "far_ext/stencilTableFactory.h"
-#include "far_ext/threads.h"
 #include "far_ext/topologyRefinerFactory.h"
 #include "osd_ext/cpuEvaluator.h"
-#include "osd_ext/ompEvaluator.h"
+#include "osd_ext/polygonIndices.h"
 #include "osd_ext/refinementEvaluator.h"
 #include "osd_ext/simdLevel.h"
-#include "osd_ext/triangleIndices.h"
 #include "regression/shapes/shapeDescriptor.h"
 
 #include <opensubdiv/osd/cpuVertexBuffer.h>
@@ -81,8 +79,8 @@ struct Results {
             evaluator->Evaluate(scene.points.data(), desc, values.data(), desc, kLevel);
         }
         evaluate<OsdExt::CpuEvaluator>(scene, *scene.table);
-        evaluate<OsdExt::OmpEvaluator>(scene, *scene.table);
-        evaluate<OsdExt::OmpEvaluator>(scene, *scene.compactTable);
+        evaluate<OsdExt::ParallelEvaluator>(scene, *scene.table);
+        evaluate<OsdExt::ParallelEvaluator>(scene, *scene.compactTable);
     }
 
     bool operator==(Results const &other) const {

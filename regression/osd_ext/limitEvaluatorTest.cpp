@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // RefinementEvaluator::EvaluateLimit against limit stencil tables in double precision.
-#include "far_ext/limitStencilTableFactory.h"
-#include "far_ext/threads.h"
+#include "far_ext/executor.h"
+#include "far_ext/stencilTableFactory.h"
 #include "far_ext/topologyRefinerFactory.h"
 #include "osd_ext/refinementEvaluator.h"
 #include "osd_ext/simdLevel.h"
@@ -39,7 +39,7 @@ createRefiner(Shape const &shape, int level, bool isFull = true,
     Sdc::Options sdcOptions;
     sdcOptions.SetVtxBoundaryInterpolation(boundary);
     FarExt::TopologyRefinerFactory::Options options;
-    options.schemeOptions.faceMask = faceMask;
+    options.hexSchemeOptions.faceMask = faceMask;
     auto refiner =
         FarExt::TopologyRefinerFactory::Create(ShapeDescriptor(shape).Get(), sdcOptions, options);
     TopologyRefiner::UniformOptions uniformOptions(level);

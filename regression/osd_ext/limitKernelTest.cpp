@@ -4,7 +4,7 @@
 #include "osd_ext/refinement/limitRowWeights.h"
 #include "osd_ext/refinement/preparedLimit.h"
 
-#include "far_ext/threads.h"
+#include "far_ext/executor.h"
 #include "far_ext/topologyRefinerFactory.h"
 #include "far_ext/vtr/hierarchy.h"
 #include "osd_ext/device/deviceLimit.h"
@@ -57,7 +57,7 @@ TEST(LimitRowWeights, AreSharedByRowsThatHaveTheSame) {
 // Each thread finds masks for itself: what a device gets is the same for any number of threads.
 TEST(DeviceLimit, DoesNotDependOnThreads) {
     FarExt::TopologyRefinerFactory::Options options;
-    options.schemeOptions.faceMask = FarExt::FaceMask::Cosine;
+    options.hexSchemeOptions.faceMask = FarExt::FaceMask::Cosine;
     Shape const torus = MakeTorus(40, 40, TorusFaces::IrregularTriangles);
     auto const refiner = FarExt::TopologyRefinerFactory::Create(ShapeDescriptor(torus).Get(),
                                                                 Sdc::Options(), options);
@@ -68,8 +68,8 @@ TEST(DeviceLimit, DoesNotDependOnThreads) {
     OsdExt::internal::DeviceLimit limits[2];
     for (OsdExt::internal::DeviceLimit &limit : limits) {
         FarExt::SetNumThreads(&limit == limits ? 1 : 4);
-        FarExt::internal::LimitRows rows(mesh.levels[1], Sdc::Options(), options.schemeOptions);
-        ASSERT_TRUE(MakeDeviceLimit(mesh, options.schemeOptions, rows, limit).IsOk());
+        FarExt::internal::LimitRows rows(mesh.levels[1], Sdc::Options(), options.hexSchemeOptions);
+        ASSERT_TRUE(MakeDeviceLimit(mesh, options.hexSchemeOptions, rows, limit).IsOk());
     }
     FarExt::SetNumThreads(0);
     EXPECT_EQ(limits[0].weights, limits[1].weights);

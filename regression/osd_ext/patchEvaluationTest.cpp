@@ -4,7 +4,6 @@
 #include "far_ext/patchTableFactory.h"
 #include "far_ext/topologyRefinerFactory.h"
 #include "osd_ext/cpuEvaluator.h"
-#include "osd_ext/ompEvaluator.h"
 #include "regression/shapes/featureShapes.h"
 #include "regression/shapes/shapeDescriptor.h"
 
@@ -181,8 +180,8 @@ void compareAll(OsdFar::PatchTable const &table, int numPoints) {
                                                 << ", random " << isRandom);
                 ASSERT_NO_FATAL_FAILURE(compare<OsdExt::CpuEvaluator>(
                     table, numPoints, coords, length, length + 2, numOutputs));
-                ASSERT_NO_FATAL_FAILURE(compare<OsdExt::OmpEvaluator>(table, numPoints, coords,
-                                                                      length, length, numOutputs));
+                ASSERT_NO_FATAL_FAILURE(compare<OsdExt::ParallelEvaluator>(
+                    table, numPoints, coords, length, length, numOutputs));
             }
         }
     }

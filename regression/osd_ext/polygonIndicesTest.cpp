@@ -79,12 +79,13 @@ TEST(PolygonIndices, OtherSteps) {
     for (Shape const &shape : GetManifoldShapes()) {
         for (int kind = 0; kind < 5; ++kind) {
             FarExt::TopologyRefinerFactory::Options factoryOptions;
-            factoryOptions.schemeOptions.firstStep = kind == 1   ? FarExt::FirstStep::TriHex
-                                                     : kind == 4 ? FarExt::FirstStep::Truncate
-                                                                 : FarExt::FirstStep::Same;
-            factoryOptions.schemeOptions.schemeType = kind == 2   ? FarExt::SchemeType::DooSabin
-                                                      : kind == 3 ? FarExt::SchemeType::TriHex
-                                                                  : FarExt::SchemeType::Hexagonal;
+            factoryOptions.hexSchemeOptions.firstStep = kind == 1   ? FarExt::FirstStep::TriHex
+                                                        : kind == 4 ? FarExt::FirstStep::Truncate
+                                                                    : FarExt::FirstStep::Same;
+            factoryOptions.hexSchemeOptions.schemeType = kind == 2 ? FarExt::SchemeType::DooSabin
+                                                         : kind == 3
+                                                             ? FarExt::SchemeType::TriHex
+                                                             : FarExt::SchemeType::Hexagonal;
             Shape holed = shape;
             holed.holeFaces = {0, shape.GetNumFaces() / 2};
             holed.fvarChannels.clear(); // not all steps take them

@@ -45,7 +45,7 @@ std::unique_ptr<TopologyRefiner> createRefiner(Shape const &shape,
                                                FarExt::HexSchemeOptions schemeOptions, int level,
                                                Sdc::Options sdcOptions = Sdc::Options()) {
     FarExt::TopologyRefinerFactory::Options options;
-    options.schemeOptions = schemeOptions;
+    options.hexSchemeOptions = schemeOptions;
     FarExt::CallStatus status;
     ShapeDescriptor const descriptor(shape);
     auto refiner =

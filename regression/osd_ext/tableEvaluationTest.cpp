@@ -4,8 +4,7 @@
 #include "evaluatorWorkspace.h"
 
 #include "osd_ext/cpuEvaluator.h"
-#include "osd_ext/ompEvaluator.h"
-#include "osd_ext/stencilEvaluation.h"
+#include "osd_ext/stencilEvaluator.h"
 #include "regression/shapes/shapeDescriptor.h"
 
 #include <opensubdiv/far/ptexIndices.h>
@@ -116,7 +115,7 @@ TEST(EvaluationOfTables, RefusesBuffersThatIntsDoNotCount) {
 
 template <class EVALUATOR>
 class EvaluatorOfTables : public testing::Test {};
-using EvaluatorTypes = testing::Types<OsdExt::CpuEvaluator, OsdExt::OmpEvaluator>;
+using EvaluatorTypes = testing::Types<OsdExt::CpuEvaluator, OsdExt::ParallelEvaluator>;
 TYPED_TEST_SUITE(EvaluatorOfTables, EvaluatorTypes, );
 
 TYPED_TEST(EvaluatorOfTables, TakesTablesOfEitherLibrary) {

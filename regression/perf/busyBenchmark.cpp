@@ -4,7 +4,7 @@
 // of the same library, and against the threads of OpenMP.
 #include "evaluation.h"
 
-#include "far_ext/ompExecutor.h"
+#include "far_ext/executor.h"
 #include "far_ext/topologyRefinerFactory.h"
 #include "regression/shapes/shapeDescriptor.h"
 
@@ -136,8 +136,8 @@ Contest makeEvaluation(BenchMesh const &mesh, int numRounds) {
     std::shared_ptr<Far::StencilTable const> const table = MakeTable(*MakeRefined(mesh));
     auto const values = std::make_shared<Values>(*table, 3);
     return makeContest("busy-evaluation", numRounds, [&](int numThreads) {
-        return MakeEvaluation<OsdExt::OmpEvaluator>("OsdExt::OmpEvaluator", numThreads, table,
-                                                    values);
+        return MakeEvaluation<OsdExt::ParallelEvaluator>("OsdExt::ParallelEvaluator", numThreads,
+                                                         table, values);
     });
 }
 

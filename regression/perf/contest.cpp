@@ -4,7 +4,6 @@
 #include "memory.h"
 
 #include "far_ext/executor.h"
-#include "far_ext/threads.h"
 
 #ifdef _OPENMP
 #include <omp.h>

@@ -8,7 +8,6 @@
 #include "far_ext/stencilTableFactory.h"
 #include "osd_ext/cudaEvaluator.h"
 #include "osd_ext/cudaRefinementEvaluator.h"
-#include "osd_ext/cudaVertexBuffer.h"
 #include "osd_ext/refinementEvaluator.h"
 #include "regression/cuda/stencilsByThread.h"
 

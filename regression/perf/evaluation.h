@@ -5,7 +5,6 @@
 #include "makers.h"
 
 #include "osd_ext/cpuEvaluator.h"
-#include "osd_ext/ompEvaluator.h"
 
 #include <opensubdiv/osd/cpuEvaluator.h>
 #include <opensubdiv/osd/cpuVertexBuffer.h>

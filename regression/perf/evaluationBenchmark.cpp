@@ -21,7 +21,7 @@ Contest makeEvaluation(BenchMesh const &mesh, int length) {
         MakeEvaluation<OsdExt::CpuEvaluator>("OsdExt::CpuEvaluator", 1, table, values),
         MakeEvaluation<Osd::CpuEvaluator>("Osd::CpuEvaluator", 1, table, values),
         MakeEvaluation<OsdExt::CpuEvaluator>("OsdExt, compact table", 1, compact, values),
-        MakeEvaluation<OsdExt::OmpEvaluator>("OsdExt::OmpEvaluator", 2, table, values)};
+        MakeEvaluation<OsdExt::ParallelEvaluator>("OsdExt::ParallelEvaluator", 2, table, values)};
     contest.pairings = {{"evaluation-1-" + suffix, 0, {1}},
                         {"evaluation-compact-" + suffix, 2, {0}},
                         {"evaluation-2-cpu-" + suffix, 3, {1}},

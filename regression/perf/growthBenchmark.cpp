@@ -25,8 +25,8 @@ Contest makeEvaluation(BenchMesh const &mesh) {
     std::shared_ptr<Far::StencilTable const> const table = MakeTable(*MakeRefined(mesh));
     auto const values = std::make_shared<Values>(*table, 3);
     return makeContest([&](int numThreads) {
-        return MakeEvaluation<OsdExt::OmpEvaluator>("OsdExt::OmpEvaluator", numThreads, table,
-                                                    values);
+        return MakeEvaluation<OsdExt::ParallelEvaluator>("OsdExt::ParallelEvaluator", numThreads,
+                                                         table, values);
     });
 }
 

@@ -5,7 +5,7 @@
 // nanoseconds per vertex, against one of the level's vertices alone.
 #include "evaluation.h"
 
-#include "far_ext/limitStencilTableFactory.h"
+#include "far_ext/stencilTableFactory.h"
 #include "osd_ext/refinementEvaluator.h"
 
 #include <opensubdiv/far/patchTableFactory.h>

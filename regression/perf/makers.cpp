@@ -22,7 +22,7 @@ void Require(bool condition, std::string const &what) {
 std::unique_ptr<FarExt::TopologyRefiner> MakeBase(BenchMesh const &mesh,
                                                   FarExt::FaceMask faceMask) {
     FarExt::TopologyRefinerFactory::Options options;
-    options.schemeOptions.faceMask = faceMask;
+    options.hexSchemeOptions.faceMask = faceMask;
     auto refiner = FarExt::TopologyRefinerFactory::Create(*MakeFarBase(mesh), options);
     Require(refiner != nullptr, "no base level");
     return refiner;

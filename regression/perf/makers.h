@@ -4,7 +4,7 @@
 
 #include "suite.h"
 
-#include "far_ext/mask.h"
+#include "far_ext/rules/mask.h"
 #include "far_ext/topologyRefiner.h"
 
 #include <opensubdiv/far/stencilTable.h>

@@ -4,7 +4,6 @@
 // take turns in one process.
 #include "far_ext/executor.h"
 #include "far_ext/stencilTableFactory.h"
-#include "far_ext/threads.h"
 #include "far_ext/topologyRefinerFactory.h"
 #include "osd_ext/cpuEvaluator.h"
 #include "osd_ext/refinementEvaluator.h"

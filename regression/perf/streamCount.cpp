@@ -6,7 +6,7 @@
 #include "memory.h"
 
 #include "bfr_ext/patchStream.h"
-#include "far_ext/threads.h"
+#include "far_ext/executor.h"
 #include "far_ext/topologyRefinerFactory.h"
 #include "tools/mesh/meshReader.h"
 #include "tools/mesh/program.h"
@@ -145,7 +145,7 @@ void run(Arguments const &arguments, std::string const &program) {
     Sdc::Options sdcOptions;
     sdcOptions.SetVtxBoundaryInterpolation(Sdc::Options::VTX_BOUNDARY_EDGE_ONLY);
     FarExt::TopologyRefinerFactory::Options options;
-    options.schemeOptions.faceMask = arguments.mask;
+    options.hexSchemeOptions.faceMask = arguments.mask;
     FarExt::CallStatus status;
     auto const refiner = FarExt::TopologyRefinerFactory::Create(Tools::DescribeTopology(mesh),
                                                                 sdcOptions, options, &status);

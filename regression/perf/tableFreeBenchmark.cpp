@@ -66,9 +66,9 @@ Contest makeContest(BenchMesh const &mesh) {
         makeLevelByLevel<OsdExt::CpuEvaluator>(*refiner, 1, values),
         MakeEvaluation<OsdExt::CpuEvaluator>("table, compact", 1, compact, values),
         MakeTableFreeContestant(refiner, 2, values),
-        MakeEvaluation<OsdExt::OmpEvaluator>("table, factorized", 2, table, values),
-        makeLevelByLevel<OsdExt::OmpEvaluator>(*refiner, 2, values),
-        MakeEvaluation<OsdExt::OmpEvaluator>("table, compact", 2, compact, values)};
+        MakeEvaluation<OsdExt::ParallelEvaluator>("table, factorized", 2, table, values),
+        makeLevelByLevel<OsdExt::ParallelEvaluator>(*refiner, 2, values),
+        MakeEvaluation<OsdExt::ParallelEvaluator>("table, compact", 2, compact, values)};
     contest.pairings = {{"table-free-1", 0, {1, 2, 3}}, {"table-free-2", 4, {5, 6, 7}}};
     return contest;
 }

@@ -3,19 +3,15 @@
 // Executors: that each makes all calls once, how many threads do, that hosts can bring their own,
 // and that nobody waits for who does not come.
 #include "far_ext/executor.h"
-#include "far_ext/limitStencilTableFactory.h"
-#include "far_ext/ompExecutor.h"
 #include "far_ext/stencilTableFactory.h"
-#include "far_ext/threads.h"
 #include "far_ext/topologyRefinerFactory.h"
-#include "osd_ext/ompEvaluator.h"
+#include "osd_ext/cpuEvaluator.h"
 #include "osd_ext/refinementEvaluator.h"
 #include "regression/osd_ext/evaluators.h"
 #include "regression/shapes/shapeDescriptor.h"
 
 #ifdef OPENSUBDIVHEX_HAS_TBB
 #include "far_ext/tbbExecutor.h"
-#include "osd_ext/tbbEvaluator.h"
 
 #include <tbb/task_arena.h>
 #include <tbb/task_scheduler_observer.h>
@@ -131,7 +127,7 @@ struct Made {
         auto const limit = FarExt::LimitStencilTableFactory::Create(*refiner, limitOptions);
         add(limit->GetDuWeights(), &floats);
         source.assign(shape.positions.begin(), shape.positions.end());
-        Evaluate<OsdExt::OmpEvaluator>();
+        Evaluate<OsdExt::ParallelEvaluator>();
         auto const evaluator = OsdExt::RefinementEvaluator::Create(*refiner);
         std::vector<float> values(3 * std::size_t(evaluator->GetNumElementsAllLevels()));
         Descriptor const desc(0, 3, 3);
@@ -198,15 +194,6 @@ TEST(Executor, DoesNotChangeResults) {
 }
 
 #ifdef OPENSUBDIVHEX_HAS_TBB
-TEST(Executor, TbbHasAnEvaluator) {
-    Made made;
-    auto const expected = made.Evaluate<OsdExt::OmpEvaluator>();
-    EXPECT_TRUE(made.Evaluate<OsdExt::TbbEvaluator>() == expected);
-    ExecutorScope const scope(nullptr, 3);
-    EXPECT_TRUE(made.Evaluate<OsdExt::TbbEvaluator>() == expected);
-    EXPECT_EQ(&FarExt::GetExecutor(), &FarExt::GetDefaultExecutor());
-}
-
 namespace {
 
 /// Counts how often threads of TBB come to an arena to work there.
@@ -223,24 +210,22 @@ public:
 
 } // namespace
 
-TEST(Executor, TbbEvaluatorUsesAsManyThreadsAsWereChosen) {
+TEST(Executor, TbbUsesAsManyThreadsAsWereChosen) {
     Made made;
     tbb::task_arena arena(2);
     WorkerCounter const workers(arena);
-    auto const evaluate = [&] { arena.execute([&] { made.Evaluate<OsdExt::TbbEvaluator>(); }); };
-    FarExt::SetNumThreads(1);
+    FarExt::TbbExecutor executor;
+    auto const evaluate = [&](int numThreads) {
+        ExecutorScope const scope(&executor, numThreads);
+        arena.execute([&] { made.Evaluate<OsdExt::ParallelEvaluator>(); });
+    };
     for (int i = 0; i < 50; ++i) {
-        evaluate();
-    }
-    FarExt::SetNumThreads(0);
-    {
-        ExecutorScope const alone(nullptr, 1);
-        evaluate();
+        evaluate(1);
     }
     EXPECT_EQ(workers.numTimes, 0);
     // All of TBB otherwise: they come when they find the time.
     for (int i = 0; i < 10000 && workers.numTimes == 0; ++i) {
-        evaluate();
+        evaluate(0);
     }
     EXPECT_GT(workers.numTimes, 0);
 }

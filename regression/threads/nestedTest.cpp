@@ -5,12 +5,11 @@
 #include "bfr_ext/surfaceFactory.h"
 #include "bfr_ext/view.h"
 #include "far_ext/executor.h"
-#include "far_ext/limitStencilTableFactory.h"
 #include "far_ext/stencilTableFactory.h"
 #include "far_ext/topologyRefinerFactory.h"
-#include "osd_ext/ompEvaluator.h"
+#include "osd_ext/cpuEvaluator.h"
+#include "osd_ext/polygonIndices.h"
 #include "osd_ext/refinementEvaluator.h"
-#include "osd_ext/triangleIndices.h"
 #include "regression/osd_ext/evaluators.h"
 #include "regression/shapes/shapeDescriptor.h"
 #include "regression/shapes/shapes.h"
@@ -202,10 +201,10 @@ public:
         auto const table = FarExt::StencilTableFactory::Create(*_refiner);
         std::vector<float> values(kDim * std::size_t(table->GetNumStencils()));
         Descriptor const desc(0, kDim, kDim);
-        OsdExt::OmpEvaluator::EvalStencils(_source.data(), desc, values.data(), desc,
-                                           table->GetSizes().data(), table->GetOffsets().data(),
-                                           table->GetControlIndices().data(),
-                                           table->GetWeights().data(), 0, table->GetNumStencils());
+        OsdExt::ParallelEvaluator::EvalStencils(
+            _source.data(), desc, values.data(), desc, table->GetSizes().data(),
+            table->GetOffsets().data(), table->GetControlIndices().data(),
+            table->GetWeights().data(), 0, table->GetNumStencils());
         FarExt::LimitStencilTableFactory::Options options;
         options.level = 3;
         auto const limit = FarExt::LimitStencilTableFactory::Create(*_refiner, options);

@@ -3,7 +3,6 @@
 // A program with a race, of threads of the default executor, of OpenMP or of std::thread, that
 // ThreadSanitizer must see.
 #include "far_ext/executor.h"
-#include "far_ext/threads.h"
 
 #include <string>
 #include <thread>

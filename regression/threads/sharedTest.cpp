@@ -2,14 +2,12 @@
 //
 // Threads that share refiners, tables, evaluators' settings and the error callback.  What each of
 // them makes is the same; built with ThreadSanitizer, that no two of them race is tested, too.
-#include "far_ext/limitStencilTableFactory.h"
 #include "far_ext/stencilTableFactory.h"
 #include "far_ext/topologyRefinerFactory.h"
-#include "osd_ext/compactStencilTable.h"
 #include "osd_ext/cpuEvaluator.h"
-#include "osd_ext/ompEvaluator.h"
+#include "osd_ext/polygonIndices.h"
 #include "osd_ext/refinementEvaluator.h"
-#include "osd_ext/triangleIndices.h"
+#include "osd_ext/stencilEvaluator.h"
 #include "regression/osd_ext/evaluators.h"
 #include "regression/shapes/featureShapes.h"
 #include "regression/shapes/shapeDescriptor.h"
@@ -57,7 +55,7 @@ std::vector<float> makeTables(TopologyRefiner const &refiner) {
     options.interpolationMode = FarExt::INTERPOLATE_VERTEX;
     add(StencilTableFactory::CreateOfFaces(refiner, Far::ConstIndexArray(faces, 2), options)
             ->GetWeights());
-    weights.push_back(float(StencilTableFactory::EstimateSize(refiner, options).numWeights));
+    weights.push_back(float(StencilTableFactory::GetSize(refiner, options).numWeights));
     FarExt::LimitStencilTableFactory::Options limitOptions;
     limitOptions.level = refiner.GetMaxLevel();
     limitOptions.generateFurtherSides = true;
@@ -147,7 +145,7 @@ TEST(Shared, TableIsEvaluated) {
     auto const refiner = createRefiner(GetFeatureShape("cubeOfCharts"), kLargeLevel);
     auto const table = StencilTableFactory::Create(*refiner);
     expectSameOnThreads([&] { return evaluate<OsdExt::CpuEvaluator>(*table); });
-    expectSameOnThreads([&] { return evaluate<OsdExt::OmpEvaluator>(*table); });
+    expectSameOnThreads([&] { return evaluate<OsdExt::ParallelEvaluator>(*table); });
     expectSameOnThreads([&] {
         return std::vector<std::size_t>{OsdExt::CompactStencilTable::Create(*table)->GetNumBytes()};
     });

@@ -263,7 +263,7 @@ TEST_F(HexrefineAdaptive, BadArgumentsAreNamed) {
          {"--evaluator primvar", "--simd portable", "--coplanar", "--separate-vertices -o x.ply"}) {
         std::string const name = option.substr(0, option.find(' '));
         expectBadUsage(cube + " --adaptive " + option, name + ": is not for --adaptive\n");
-        std::size_t const list = help.out.find("not with");
+        std::size_t const list = help.out.find("without gaps; not");
         EXPECT_LT(help.out.find(name, list), help.out.find("--camera", list)) << help.out;
     }
     expectBadUsage(cube + " --png a.png --png-colors levels", "--adaptive");

@@ -35,18 +35,81 @@ std::string checkSimdLevel(std::string const &word) {
                         : "there is no " + word + " here, at most " + OsdExt::GetSimdLevelName(max);
 }
 
-void addSchemeOptions(CLI::App &app, Arguments *arguments) {
-    app.add_option("--scheme", arguments->scheme,
-                   "Subdivision scheme; hex is short for hexagonal. The others drop border faces "
-                   "and take neither creases, corners, texture coordinates nor normals")
-        ->check(CLI::IsMember({"hex", "hexagonal", "doo-sabin", "tri-hex"}))
+bool isNumberOfSteps(std::string const &word) {
+    int level = 0;
+    return ParseInt(word, &level) && level >= 0;
+}
+
+void addFileOptions(CLI::App &app, Arguments *arguments) {
+    app.option_defaults()->group("Files");
+    app.add_option("INPUT", arguments->input, "Mesh to refine: .obj, .off or .ply")
+        ->type_name("FILE")
+        ->required();
+    app.add_option(
+           "-o,--output", arguments->output,
+           "File for the last level: .obj, .off or .ply (binary); none: nothing is written. "
+           "What its format does not hold is named by the summary. Holes are left out")
+        ->check(MakeMeshFile())
+        ->type_name("FILE");
+    app.add_flag("--separate-vertices", arguments->isSeparate,
+                 "Write a vertex of .ply and .off files once for each of its texture coordinates "
+                 "and normals, at seams and, with --limit, at sharp creases");
+    app.add_option("--png", arguments->png, "File for a ray traced picture of the last level")
+        ->check(MakePngFile())
+        ->check([](std::string const &) {
+            return std::string(HasRenderer() ? "" : "this program was built without Embree");
+        })
+        ->type_name("FILE");
+    app.add_option(
+           "--png-colors", arguments->pngColors,
+           "What has a colour of its own in the picture: each face of INPUT, all faces of a "
+           "material, group or object of an .obj file, or the levels of --adaptive")
+        ->check(CLI::IsMember(kPictureColors))
+        ->needs("--png");
+}
+
+void addSurfaceOptions(CLI::App &app, Arguments *arguments) {
+    app.option_defaults()->group("Surface");
+    app.add_option(
+           "--like", arguments->like,
+           "Defaults of the options below: those of the paper, or what renderers want, "
+           "which is --mask smooth, --boundary edge-and-corner and, where nine of ten faces "
+           "are triangles, --first-step truncate. hexview and the Blender add-on are for "
+           "pictures and begin with smooth; this program and the libraries in C++ and "
+           "Python begin with the paper")
+        ->check(CLI::IsMember({kLikePaper, kLikeRenderer}))
         ->capture_default_str();
+    app.add_option("--mask", arguments->mask,
+                   "Mask of the face points: average is the paper's, smooth is the smoothest")
+        ->check(CLI::IsMember(kMaskNames))
+        ->default_str("average, or that of --like");
+    app.add_option("--boundary", arguments->boundary,
+                   "Rule for boundaries, before that of the file: none is the paper's, the border "
+                   "moves inward; else it becomes a smooth curve, with corners where vertices have "
+                   "one face")
+        ->check(CLI::IsMember(kBoundaryNames))
+        ->default_str("the file's, or none, or that of --like");
     app.add_option(
            "--first-step", arguments->firstStep,
            "Make level 1 by another step, after which vertices have three faces each: "
            "truncate, which cuts off corners, for meshes of triangles; tri-hex, which takes "
            "what the scheme of that name does")
         ->check(CLI::IsMember(kFirstStepNames))
+        ->default_str("none, or that of --like");
+    app.add_option("--crease-angle", arguments->creaseAngle,
+                   "Makes infinitely sharp creases of the edges between faces whose normals differ "
+                   "by more than so many degrees, 0 to 180; other creases are those of the file")
+        ->check(checkAngle)
+        ->type_name("DEG");
+    app.add_option("--fvar-interpolation", arguments->fvarInterpolation,
+                   "Where texture coordinates and normals are interpolated linearly, before what "
+                   "the file says; all is everywhere")
+        ->check(CLI::IsMember(kFVarInterpolationNames))
+        ->default_str("the file's, or all");
+    app.add_option("--scheme", arguments->scheme,
+                   "Subdivision scheme; hex is short for hexagonal. The others drop border faces "
+                   "and take neither creases, corners, texture coordinates nor normals")
+        ->check(CLI::IsMember({"hex", "hexagonal", "doo-sabin", "tri-hex"}))
         ->capture_default_str();
     auto *const coplanar =
         app.add_flag("--coplanar", arguments->isCoplanar,
@@ -63,54 +126,24 @@ void addSchemeOptions(CLI::App &app, Arguments *arguments) {
         ->needs(coplanar);
 }
 
-void addFileOptions(CLI::App &app, Arguments *arguments) {
-    app.add_option("INPUT", arguments->input, "Mesh to refine: .obj, .off or .ply")
-        ->type_name("FILE")
-        ->required();
+void addLevelOptions(CLI::App &app, Arguments *arguments) {
+    app.option_defaults()->group("Refinement");
     app.add_option("-l,--level", arguments->level, "Number of refinement steps")
         ->check([](std::string const &word) {
-            int level = 0;
-            return std::string(ParseInt(word, &level) && level >= 0
-                                   ? ""
-                                   : "'" + word + "' is not a number of steps, 0 or more");
+            return isNumberOfSteps(word) ? std::string()
+                                         : "'" + word + "' is not a number of steps, 0 or more";
         })
         ->capture_default_str();
-    app.add_option(
-           "-o,--output", arguments->output,
-           "File for the last level: .obj, .off or .ply (binary); none: nothing is "
-           "written. It keeps what its format holds, and the summary names the rest: .obj "
-           "texture coordinates, normals, colours, objects, groups and materials (a hexagon "
-           "that a seam crosses is written as two quads), .ply all numbers of vertices and "
-           "faces, .off colours. Holes are left out")
-        ->check(MakeMeshFile())
-        ->type_name("FILE");
+    app.add_flag("--limit", arguments->isLimit,
+                 "Push the vertices to the limit surface and write its normals: to both sides of "
+                 "sharp creases in .obj files, their mean at each vertex in .ply and .off files; "
+                 "colours and other numbers of vertices stay as they are");
+    app.option_defaults()->group("Refinement for a camera");
+    AddAdaptiveOptions(app, &arguments->adaptive);
 }
 
-void addRuleOptions(CLI::App &app, Arguments *arguments) {
-    app.add_option("--mask", arguments->mask,
-                   "Mask of the face points: average is the paper's, smooth is the smoothest")
-        ->check(CLI::IsMember(kMaskNames))
-        ->capture_default_str();
-    addSchemeOptions(app, arguments);
-    app.add_option("--boundary", arguments->boundary,
-                   "Rule for boundaries, before that of the file: none is the paper's, the border "
-                   "moves inward; else it becomes a smooth curve, with corners where vertices have "
-                   "one face")
-        ->check(CLI::IsMember(kBoundaryNames))
-        ->default_str("the file's, or none");
-    app.add_option("--crease-angle", arguments->creaseAngle,
-                   "Makes infinitely sharp creases of the edges between faces whose normals differ "
-                   "by more than so many degrees, 0 to 180; other creases are those of the file")
-        ->check(checkAngle)
-        ->type_name("DEG");
-    app.add_option("--fvar-interpolation", arguments->fvarInterpolation,
-                   "Where texture coordinates and normals are interpolated linearly, before what "
-                   "the file says; all is everywhere")
-        ->check(CLI::IsMember(kFVarInterpolationNames))
-        ->default_str("the file's, or all");
-}
-
-void addEvaluationOptions(CLI::App &app, Arguments *arguments) {
+void addComputationOptions(CLI::App &app, Arguments *arguments) {
+    app.option_defaults()->group("Computation");
     app.add_option("--evaluator", arguments->evaluator,
                    "How values are computed. refinement: level by level without a table, the "
                    "fastest; stencil: from a stencil table; stencil-cpu, stencil-omp: from a table "
@@ -127,15 +160,6 @@ void addEvaluationOptions(CLI::App &app, Arguments *arguments) {
 #endif
         })
         ->capture_default_str();
-    app.add_flag("--limit", arguments->isLimit,
-                 "Push the vertices to the limit surface and write its normals: to both sides of "
-                 "sharp creases in .obj files, their mean at each vertex in .ply and .off files; "
-                 "colours and other numbers of vertices stay as they are");
-    app.add_flag("--separate-vertices", arguments->isSeparate,
-                 "Write a vertex of .ply and .off files once for each of its texture coordinates "
-                 "and normals, at seams and, with --limit, at sharp creases; the first of each lie "
-                 "where they are without this");
-    AddAdaptiveOptions(app, &arguments->adaptive);
     app.add_option("--threads", arguments->numThreads,
                    "Number of threads, 1 to 1024; the result does not depend on it")
         ->check([](std::string const &word) {
@@ -161,24 +185,12 @@ void addEvaluationOptions(CLI::App &app, Arguments *arguments) {
 }
 
 void addReportOptions(CLI::App &app, Arguments *arguments) {
-    app.add_option("--png", arguments->png, "File for a ray traced picture of the last level")
-        ->check(MakePngFile())
-        ->check([](std::string const &) {
-            return std::string(HasRenderer() ? "" : "this program was built without Embree");
-        })
-        ->type_name("FILE");
-    app.add_option(
-           "--png-colors", arguments->pngColors,
-           "What has a colour of its own in the picture: each face of INPUT with what is "
-           "refined from it, all faces of a material, group or object of an .obj file, or the "
-           "levels of --adaptive")
-        ->check(CLI::IsMember(kPictureColors))
-        ->needs("--png");
+    app.option_defaults()->group("Report");
     app.add_option("--stats", arguments->stats, "File for statistics as JSON; - is standard output")
         ->type_name("FILE|-");
     app.add_flag("--tags", arguments->printsTags,
                  "Print creases, corners, holes, rules and channels, as lines for an .obj file");
-    app.add_flag("--quiet", arguments->isQuiet, "Print no summary and show no progress");
+    app.add_flag("--quiet", arguments->isQuiet, "Print no summary and no hints, show no progress");
 }
 
 /// No file may be written twice, or be the input and something else than a mesh.
@@ -209,8 +221,14 @@ void checkOptions(CLI::App const &app, Arguments const &arguments) {
     if (arguments.printsTags && arguments.stats == "-") {
         throw CLI::ValidationError("--tags", "standard output is taken by --stats -");
     }
-    if (arguments.isCoplanar && (arguments.scheme != "hex" || arguments.firstStep != "none")) {
+    if (arguments.isCoplanar &&
+        (arguments.scheme != "hex" || arguments.firstStep.value_or("none") != "none")) {
         throw CLI::ValidationError("--coplanar", "is for the hexagonal scheme alone");
+    }
+    if (arguments.IsLikeRenderer() && (arguments.isCoplanar || arguments.scheme != "hex")) {
+        throw CLI::ValidationError(
+            "--like", std::string(kLikeRenderer) + " is not for " +
+                          (arguments.isCoplanar ? "--coplanar" : "--scheme " + arguments.scheme));
     }
     // The library takes a name that it cannot use for none.
     char const *const simd = std::getenv("OPENSUBDIVHEX_SIMD");
@@ -245,8 +263,9 @@ void checkOptions(CLI::App const &app, Arguments const &arguments) {
 
 void AddOptions(CLI::App &app, Arguments *arguments) {
     addFileOptions(app, arguments);
-    addRuleOptions(app, arguments);
-    addEvaluationOptions(app, arguments);
+    addLevelOptions(app, arguments);
+    addSurfaceOptions(app, arguments);
+    addComputationOptions(app, arguments);
     addReportOptions(app, arguments);
     app.callback([arguments, &app] {
         if (arguments->scheme == "hexagonal") {
@@ -254,8 +273,20 @@ void AddOptions(CLI::App &app, Arguments *arguments) {
         }
         checkOptions(app, *arguments);
     });
+    app.option_defaults()->group("Options");
     app.set_version_flag("--version", "hexrefine " OPENSUBDIVHEX_VERSION);
-    app.footer("Exit status: 0 success, 1 bad input or failed output, 2 bad usage.");
+    app.footer("Examples:\n"
+               "  hexrefine cage.obj --like renderer -l 3 --limit -o smooth.ply\n"
+               "      a smooth surface with its normals, three levels fine\n"
+               "  hexrefine cage.obj -l 2 -o refined.obj\n"
+               "      as the paper has it\n"
+               "  hexrefine cage.obj --like renderer --adaptive --camera 0,1,5,0,0,0 -o seen.ply\n"
+               "      as fine as the camera at 0, 1, 5 needs it\n"
+               "  hexrefine cage.obj -l 3 --quiet --stats -\n"
+               "      what the levels have, as JSON\n"
+               "\n"
+               "Hints on what is likely wrong go to standard error, once each.\n"
+               "Exit status: 0 success, 1 bad input or failed output, 2 bad usage.");
 }
 
 } // namespace OpenSubdivHex::Tools

@@ -16,14 +16,18 @@ class App;
 
 namespace OpenSubdivHex::Tools {
 
+inline constexpr char kLikePaper[] = "paper";
+inline constexpr char kLikeRenderer[] = "renderer";
+
 /// What the command line says, checked.
 struct Arguments {
     std::string input;
     int level = 1;
     std::string output;
-    std::string mask = "average";
+    std::string like = kLikePaper;
+    std::optional<std::string> mask;
     std::string scheme = "hex";
-    std::string firstStep = "none";
+    std::optional<std::string> firstStep;
     bool isCoplanar = false;
     double tolerance = FarExt::TopologyRefiner::CoplanarOptions(0).angleTolerance;
     bool hasOpenGaps = false;
@@ -41,6 +45,9 @@ struct Arguments {
     AdaptiveArguments adaptive;
     bool printsTags = false;
     bool isQuiet = false;
+
+    /// Whether what is not said is as renderers want it, else as the paper has it.
+    bool IsLikeRenderer() const { return like == kLikeRenderer; }
 };
 
 /// Adds all options, and checks of what does not go together: they are what \p arguments have when \p app

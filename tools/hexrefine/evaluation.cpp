@@ -2,7 +2,7 @@
 #include "evaluation.h"
 
 #include "far_ext/primvarRefiner.h"
-#include "osd_ext/ompEvaluator.h"
+#include "osd_ext/cpuEvaluator.h"
 #include "osd_ext/refinementEvaluator.h"
 
 #include <opensubdiv/osd/cpuEvaluator.h>
@@ -165,7 +165,8 @@ bool EvaluateStencils(Far::StencilTable const &table, std::string const &evaluat
         return true;
     };
     if (evaluator == kStencil) {
-        return evaluate([](auto... args) { return OsdExt::OmpEvaluator::EvalStencils(args...); });
+        return evaluate(
+            [](auto... args) { return OsdExt::ParallelEvaluator::EvalStencils(args...); });
     }
 #ifdef HEXREFINE_HAS_OPENMP
     if (evaluator == kStencilOmp) {
@@ -205,7 +206,8 @@ bool EvaluateLimit(Far::LimitStencilTable const &table, FarExt::LimitSides const
         isDone = evaluate([](auto... args) { return Osd::OmpEvaluator::EvalStencils(args...); });
 #endif
     } else {
-        isDone = evaluate([](auto... args) { return OsdExt::OmpEvaluator::EvalStencils(args...); });
+        isDone =
+            evaluate([](auto... args) { return OsdExt::ParallelEvaluator::EvalStencils(args...); });
     }
     if (!isDone) {
         return false;

@@ -2,7 +2,6 @@
 #ifndef OPENSUBDIVHEX_TOOLS_EVALUATION_H
 #define OPENSUBDIVHEX_TOOLS_EVALUATION_H
 
-#include "far_ext/limitStencilTableFactory.h"
 #include "far_ext/stencilTableFactory.h"
 
 #include <opensubdiv/far/stencilTable.h>
@@ -24,7 +23,7 @@ struct Primvar {
 /// \brief The values of --evaluator.
 /// @{
 inline constexpr char kRefinement[] = "refinement";  ///< OsdExt::RefinementEvaluator
-inline constexpr char kStencil[] = "stencil";        ///< OsdExt::OmpEvaluator
+inline constexpr char kStencil[] = "stencil";        ///< OsdExt::ParallelEvaluator
 inline constexpr char kStencilCpu[] = "stencil-cpu"; ///< Osd::CpuEvaluator
 inline constexpr char kStencilOmp[] = "stencil-omp"; ///< Osd::OmpEvaluator
 inline constexpr char kPrimvar[] = "primvar";        ///< FarExt::PrimvarRefiner
@@ -61,7 +60,7 @@ CreateLimitStencils(FarExt::TopologyRefiner const &refiner, bool fromLevel0,
 /// \brief Replaces \p positions by the limit points of \p table, from CreateLimitStencils, in terms
 /// of whose vertices they are, and \p normals by a normal for each side, 1 long; 0 where there is no
 /// tangent plane.
-/// \param evaluator  stencil-cpu, stencil-omp or, for all others, OsdExt::OmpEvaluator
+/// \param evaluator  stencil-cpu, stencil-omp or, for all others, OsdExt::ParallelEvaluator
 /// \return           false if it refuses
 bool EvaluateLimit(OpenSubdiv::Far::LimitStencilTable const &table, FarExt::LimitSides const &sides,
                    std::string const &evaluator, std::vector<float> *positions,

@@ -3,7 +3,6 @@
 #define OPENSUBDIVHEX_TOOLS_FACE_LOOP_H
 
 #include "far_ext/executor.h"
-#include "far_ext/threads.h"
 
 #include <atomic>
 #include <exception>

@@ -154,7 +154,7 @@ TEST_F(Hexrefine, WarnsOfLinesThatAreNotJoined) {
                                 ": warning: the backslash at the end of line 5 does not join it "
                                 "with the next, which begins with a statement, 'f'\n");
     EXPECT_EQ(ReadMesh(getPath("out.obj")).GetNumFaces(), 2);
-    EXPECT_EQ(run(getPath("out.obj")).error, ""); // which has a blank behind the name
+    EXPECT_EQ(run(getPath("out.obj") + " --quiet").error, ""); // which has a blank behind the name
 }
 
 TEST_F(Hexrefine, RefusesToWriteNothing) {

@@ -9,7 +9,7 @@
 #include "progress.h"
 #include "statistics.h"
 
-#include "far_ext/threads.h"
+#include "far_ext/executor.h"
 #include "osd_ext/simdLevel.h"
 #include "tools/mesh/fileError.h"
 #include "tools/mesh/meshText.h"
@@ -50,10 +50,11 @@ void setSimdLevel(std::string const &name) {
     OsdExt::SetSimdLevel(level);
 }
 
-/// Prints what is asked for, and writes the statistics.
-void report(Arguments const &arguments, Statistics const &statistics, std::string const &tagText) {
+/// Prints what is asked for and the hints, and writes the statistics.
+void report(Arguments const &arguments, Job const &job) {
+    Statistics const &statistics = job.GetStatistics();
     if (arguments.printsTags) {
-        print(tagText);
+        print(job.GetTagText());
     }
     if (!arguments.stats.empty()) {
         writeStatistics(statistics, arguments.stats);
@@ -64,6 +65,11 @@ void report(Arguments const &arguments, Statistics const &statistics, std::strin
             summary += path.empty() ? "" : "wrote " + EscapeControls(path) + "\n";
         }
         print(summary);
+    }
+    for (std::string const &hint : job.GetHints()) {
+        if (!arguments.isQuiet) {
+            PrintHint("hexrefine", arguments.input, hint);
+        }
     }
 }
 
@@ -96,7 +102,7 @@ void refine(Arguments const &arguments) {
         job.Write();
     });
     progress.reset(); // its line is removed
-    report(arguments, job.GetStatistics(), job.GetTagText());
+    report(arguments, job);
 }
 
 } // namespace

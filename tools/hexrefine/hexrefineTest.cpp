@@ -6,6 +6,9 @@
 #include "far_ext/version.h"
 #include "osd_ext/simdLevel.h"
 
+#include <algorithm>
+#include <sstream>
+
 #ifdef __has_feature
 #if __has_feature(address_sanitizer)
 #define HAS_ADDRESS_SANITIZER
@@ -24,6 +27,98 @@ TEST_F(Hexrefine, PrintsHelpAndVersion) {
         EXPECT_NE(help.out.find(option), std::string::npos) << option;
     }
     EXPECT_EQ(run("--version").out, "hexrefine " OPENSUBDIVHEX_VERSION "\n");
+}
+
+TEST_F(Hexrefine, HelpHasGroupsExamplesAndLinesOfAHundredCharacters) {
+    std::string const help = run("--help").out;
+    std::size_t last = 0;
+    for (char const *group : {"\nFiles:\n", "\nRefinement:\n", "\nRefinement for a camera:\n",
+                              "\nSurface:\n", "\nComputation:\n", "\nReport:\n", "\nExamples:\n"}) {
+        std::size_t const place = help.find(group);
+        ASSERT_NE(place, std::string::npos) << group;
+        EXPECT_GT(place, last) << group;
+        last = place;
+    }
+    std::istringstream lines(help);
+    for (std::string line; std::getline(lines, line);) {
+        EXPECT_LT(line.size(), 100u) << line;
+    }
+}
+
+TEST_F(Hexrefine, IsLikeRenderers) {
+    std::string const cube = makeCubeFile();
+    auto const getRules = [&](std::string const &arguments) {
+        Json const json = Json::parse(run(arguments + " --quiet --stats -").out);
+        return json["mask"].get<std::string>() + " " + json["boundary"].get<std::string>() + " " +
+               json["firstStep"].get<std::string>();
+    };
+    EXPECT_EQ(getRules(cube), "average none none");
+    EXPECT_EQ(getRules(cube + " --like paper"), "average none none");
+    EXPECT_EQ(getRules(cube + " --like renderer"), "smooth edge-and-corner none");
+    std::string const triangles = makeFile("triangles.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\n"
+                                                            "f 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n");
+    EXPECT_EQ(getRules(triangles), "average none none");
+    EXPECT_EQ(getRules(triangles + " --like renderer"), "smooth edge-and-corner truncate");
+    // What is said, and what the file says, come before it.
+    EXPECT_EQ(getRules(triangles + " --like renderer --mask cosine --first-step none --boundary "
+                                   "edge-only"),
+              "cosine edge-only none");
+    std::string const tagged =
+        makeFile("tagged.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n"
+                               "t interpolateboundary 1/0/0 2\n");
+    EXPECT_EQ(getRules(tagged + " --like renderer"), "smooth edge-only none");
+    expectBadUsage(cube + " --like renderer --scheme doo-sabin",
+                   "--like: renderer is not for --scheme doo-sabin");
+    expectBadUsage(cube + " --like renderer --coplanar", "--like: renderer is not for --coplanar");
+    expectBadUsage(cube + " --like film", "--like");
+}
+
+TEST_F(Hexrefine, HintsAtWhatIsLikelyWrong) {
+    std::string const begin = "hexrefine: ";
+    auto const getHints = [&](std::string const &path, std::string const &arguments) {
+        Result const result = run(path + " " + arguments);
+        EXPECT_EQ(result.status, 0);
+        std::string const prefix = begin + path + ": hint: ";
+        std::vector<std::string> hints;
+        std::istringstream lines(result.error);
+        for (std::string line; std::getline(lines, line);) {
+            EXPECT_EQ(line.rfind(prefix, 0), 0u) << line;
+            hints.push_back(line.substr(std::min(line.size(), prefix.size())));
+        }
+        return hints;
+    };
+    auto const expectHint = [&](std::string const &path, std::string const &arguments,
+                                std::string const &hint) {
+        std::vector<std::string> const hints = getHints(path, arguments);
+        ASSERT_EQ(hints.size(), 1u) << arguments;
+        EXPECT_EQ(hints[0].rfind(hint, 0), 0u) << hints[0];
+    };
+    std::string const cube = makeCubeFile();
+    EXPECT_TRUE(getHints(cube, "-l 3").empty());
+    expectHint(cube, "-l 4", "with --mask average curvature grows from level to level");
+    for (char const *silent : {"--mask average", "--mask smooth", "--like renderer", "--quiet"}) {
+        EXPECT_TRUE(getHints(cube, std::string("-l 4 ") + silent).empty()) << silent;
+    }
+    std::string const triangles = makeFile("triangles.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\n"
+                                                            "f 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n");
+    EXPECT_TRUE(getHints(triangles, "-l 0").empty());
+    expectHint(triangles, "-l 1", "the faces are triangles");
+    EXPECT_TRUE(getHints(triangles, "--first-step none").empty());
+    EXPECT_TRUE(getHints(triangles, "--like renderer").empty());
+    // Two quads beside each other, with four vertices each; with six there is nothing to weld.
+    std::string const apart =
+        makeFile("apart.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 1 0 0\nv 2 0 0\nv 2 1 0\n"
+                              "v 1 1 0\nf 1 2 3 4\nf 5 6 7 8\n");
+    expectHint(apart, "", "8 of 8 edges are open, and 8 vertices lie at 6 places: weld");
+    std::string const welded =
+        makeFile("welded.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 2 0 0\nv 2 1 0\n"
+                               "f 1 2 3 4\nf 2 5 6 3\n");
+    EXPECT_TRUE(getHints(welded, "").empty());
+    // Two quads that meet in vertex 2.
+    std::string const bow =
+        makeFile("bow.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 2 1 0\nv 2 2 0\nv 1 2 0\n"
+                            "f 1 2 3 4\nf 3 5 6 7\n");
+    expectHint(bow, "", "vertex 2 (counted from 0) is non-manifold");
 }
 
 TEST_F(Hexrefine, RefinesCube) {
@@ -379,7 +474,7 @@ TEST_F(Hexrefine, RefusesBadInput) {
 TEST_F(Hexrefine, WarnsOfInconsistentOrientation) {
     std::string const path = makeFile("flipped.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\n"
                                                      "f 1 2 3\nf 1 2 4\nf 2 3 4\n");
-    Result const result = run(path + " -l 2 -o " + getPath("out.obj"));
+    Result const result = run(path + " -l 2 --quiet -o " + getPath("out.obj"));
     EXPECT_EQ(result.status, 0);
     EXPECT_EQ(result.error.rfind("hexrefine: " + path + ": warning: ", 0), 0u) << result.error;
     EXPECT_NE(result.error.find("between vertices 0 and 1, of faces 0 and 1"), std::string::npos)

@@ -3,6 +3,7 @@
 
 #include "creaseAngle.h"
 #include "degenerateFaces.h"
+#include "hints.h"
 #include "levelMesh.h"
 #include "libraryPaths.h"
 #include "normals.h"
@@ -32,12 +33,12 @@ namespace {
 
 constexpr char kName[] = "hexrefine";
 
-FarExt::HexSchemeOptions findSchemeOptions(Arguments const &arguments) {
+FarExt::HexSchemeOptions findSchemeOptions(Statistics const &statistics) {
     FarExt::HexSchemeOptions options;
-    options.faceMask = FindRule<FarExt::FaceMask>(kMaskNames, arguments.mask);
+    options.faceMask = FindRule<FarExt::FaceMask>(kMaskNames, statistics.mask);
     options.schemeType = FindRule<FarExt::SchemeType>(
-        kSchemeNames, arguments.scheme == "hex" ? "hexagonal" : arguments.scheme);
-    options.firstStep = FindRule<FarExt::FirstStep>(kFirstStepNames, arguments.firstStep);
+        kSchemeNames, statistics.scheme == "hex" ? "hexagonal" : statistics.scheme);
+    options.firstStep = FindRule<FarExt::FirstStep>(kFirstStepNames, statistics.firstStep);
     return options;
 }
 
@@ -96,11 +97,11 @@ std::vector<std::string> findValuesNotHeld(std::string const &path,
 Job::Job(Arguments const &arguments, Progress &progress)
     : _arguments(arguments), _progress(progress) {
     _statistics.scheme = arguments.scheme;
-    _statistics.firstStep = arguments.firstStep;
+    _statistics.firstStep = arguments.firstStep.value_or("none");
     if (arguments.isCoplanar) {
         _statistics.coplanar = {arguments.tolerance, arguments.hasOpenGaps};
     }
-    _statistics.mask = arguments.mask;
+    _statistics.mask = arguments.mask.value_or(arguments.IsLikeRenderer() ? "smooth" : "average");
     _statistics.evaluator = isAdaptive() ? "surface" : arguments.evaluator;
     _statistics.input = arguments.input;
 }
@@ -109,6 +110,9 @@ void Job::Read() {
     measure("reading", &_statistics.milliseconds.read,
             [&] { _mesh = ReadInput(kName, _arguments.input); });
     _regions = FindRegions(_arguments.pngColors, _mesh, _arguments.input);
+    if (_arguments.IsLikeRenderer() && !_arguments.firstStep && IsOfTriangles(_mesh)) {
+        _statistics.firstStep = "truncate";
+    }
 }
 
 void Job::Validate() {
@@ -219,12 +223,14 @@ void Job::requireDone(bool isDone, FarExt::CallStatus const &status) const {
 
 void Job::warn(std::string const &message) const { PrintWarning(kName, _arguments.input, message); }
 
-// The rules: those of the command line, else those of the file, else the paper's boundary and what
+// The rules: those of the command line, else those of the file, else the boundary of --like and what
 // Sdc::Options has.
 Sdc::Options Job::chooseOptions() const {
     MeshTags const &tags = _mesh.tags;
     Sdc::Options options;
-    auto boundary = tags.boundary.value_or(Sdc::Options::VTX_BOUNDARY_NONE);
+    auto boundary = tags.boundary.value_or(_arguments.IsLikeRenderer()
+                                               ? Sdc::Options::VTX_BOUNDARY_EDGE_AND_CORNER
+                                               : Sdc::Options::VTX_BOUNDARY_NONE);
     if (_arguments.boundary) {
         boundary = FindRule<decltype(boundary)>(kBoundaryNames, *_arguments.boundary);
     }
@@ -289,7 +295,7 @@ void Job::createRefiner(Sdc::Options sdcOptions) {
     descriptor.numFVarChannels = int(channels.size());
     descriptor.fvarChannels = channels.data();
     FarExt::TopologyRefinerFactory::Options options;
-    options.schemeOptions = findSchemeOptions(_arguments);
+    options.hexSchemeOptions = findSchemeOptions(_statistics);
     FarExt::CallStatus status;
     _refiner = FarExt::TopologyRefinerFactory::Create(descriptor, sdcOptions, options, &status);
     if (!_refiner) {
@@ -302,6 +308,10 @@ void Job::createRefiner(Sdc::Options sdcOptions) {
     if (!degenerateFaces.empty()) {
         warn(degenerateFaces);
     }
+    _hints =
+        FindHints(_mesh, *_refiner, isAdaptive() ? _arguments.adaptive.maxLevel : _arguments.level,
+                  _arguments.mask || _arguments.IsLikeRenderer(),
+                  _arguments.firstStep || _arguments.isCoplanar);
 }
 
 void Job::requireFaces() const {

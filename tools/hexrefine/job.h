@@ -44,6 +44,8 @@ public:
     Statistics const &GetStatistics() const { return _statistics; }
     /// What --tags prints, from Validate() on; empty where it is not asked for.
     std::string const &GetTagText() const { return _tagText; }
+    /// What is likely wrong with the mesh, or the arguments for it, from Validate() on.
+    std::vector<std::string> const &GetHints() const { return _hints; }
 
 private:
     /// Does some work of a phase, and adds the time that it takes.
@@ -71,6 +73,7 @@ private:
     Progress &_progress;
     Statistics _statistics;
     std::string _tagText;
+    std::vector<std::string> _hints;
     Mesh _mesh;                // of level 0, then of the last level
     std::vector<int> _regions; // of the picture, by face of level 0
     std::unique_ptr<FarExt::TopologyRefiner> _refiner;

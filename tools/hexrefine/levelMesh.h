@@ -2,7 +2,7 @@
 #ifndef OPENSUBDIVHEX_TOOLS_LEVEL_MESH_H
 #define OPENSUBDIVHEX_TOOLS_LEVEL_MESH_H
 
-#include "far_ext/limitStencilTableFactory.h"
+#include "far_ext/stencilTableFactory.h"
 #include "tools/mesh/mesh.h"
 
 #include <vector>

@@ -6,7 +6,7 @@
 
 #include "bfr_ext/surfaceFactory.h"
 #include "bfr_ext/view.h"
-#include "far_ext/limitStencilTableFactory.h"
+#include "far_ext/stencilTableFactory.h"
 #include "osd_ext/refinementEvaluator.h"
 #include "tools/mesh/mesh.h"
 

@@ -69,11 +69,15 @@ void addOptions(CLI::App &app, Arguments *arguments) {
                    "What makes level 1 in place of the scheme: truncate is for meshes of triangles")
         ->check(CLI::IsMember(kFirstStepNames))
         ->capture_default_str();
-    app.add_option("--mask", arguments->mask, "Mask of the face points")
+    app.add_option("--mask", arguments->mask,
+                   "Mask of the face points: smooth by default, since hexview is for pictures; "
+                   "hexrefine and the libraries begin with the paper's average")
         ->check(CLI::IsMember(kMaskNames))
         ->capture_default_str();
-    app.add_option("--boundary", arguments->boundary,
-                   "Rule for boundaries, before that of the file")
+    app.add_option(
+           "--boundary", arguments->boundary,
+           "Rule for boundaries, before that of the file; hexrefine and the libraries begin "
+           "with the paper's none")
         ->check(CLI::IsMember(kBoundaryNames))
         ->default_str("the file's, or edge-and-corner");
     auto *const limit =

@@ -4,8 +4,8 @@
 #include "drawnTopology.h"
 #include "shaders.h"
 
-#include "far_ext/patchMap.h"
-#include "osd_ext/ompEvaluator.h"
+#include "far_ext/patchTableFactory.h"
+#include "osd_ext/cpuEvaluator.h"
 #include "tools/gl/patchDrawing.h"
 
 #include <algorithm>
@@ -42,10 +42,10 @@ void PatchView::Evaluate(std::vector<float> const &controlPoints) {
     BufferDescriptor const control(0, kLength, kLength);
     BufferDescriptor const points(int(controlPoints.size()), kLength, kLength);
     Far::StencilTable const &stencils = *_patches->GetLocalPointStencilTable();
-    OsdExt::OmpEvaluator::EvalStencils(_values.data(), control, _values.data(), points,
-                                       stencils.GetSizes().data(), stencils.GetOffsets().data(),
-                                       stencils.GetControlIndices().data(),
-                                       stencils.GetWeights().data(), 0, stencils.GetNumStencils());
+    OsdExt::ParallelEvaluator::EvalStencils(
+        _values.data(), control, _values.data(), points, stencils.GetSizes().data(),
+        stencils.GetOffsets().data(), stencils.GetControlIndices().data(),
+        stencils.GetWeights().data(), 0, stencils.GetNumStencils());
     _points.Assign(_values);
 }
 

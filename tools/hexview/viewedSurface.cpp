@@ -3,10 +3,9 @@
 
 #include "shaders.h"
 
-#include "far_ext/limitStencilTableFactory.h"
 #include "far_ext/stencilTableFactory.h"
 #include "far_ext/topologyRefinerFactory.h"
-#include "osd_ext/triangleIndices.h"
+#include "osd_ext/polygonIndices.h"
 #include "tools/hexrefine/creaseAngle.h"
 #include "tools/mesh/topologyDescriptor.h"
 
@@ -44,7 +43,7 @@ std::unique_ptr<FarExt::TopologyRefiner> makeRefiner(Mesh const &mesh,
         mesh.tags.fvarInterpolation.value_or(sdcOptions.GetFVarLinearInterpolation()));
     sdcOptions.SetCreasingMethod(mesh.tags.creasingMethod.value_or(sdcOptions.GetCreasingMethod()));
     FarExt::TopologyRefinerFactory::Options options;
-    options.schemeOptions = settings.scheme;
+    options.hexSchemeOptions = settings.scheme;
     FarExt::CallStatus status;
     auto refiner = FarExt::TopologyRefinerFactory::Create(descriptor, sdcOptions, options, &status);
     // Cells begin with the faces of the surface level.

@@ -4,7 +4,6 @@
 #include "meshContent.h"
 
 #include "far_ext/executor.h"
-#include "far_ext/threads.h"
 
 #include <algorithm>
 #include <charconv>

@@ -9,10 +9,12 @@
 
 #include <CLI/CLI.hpp>
 
+#include <algorithm>
 #include <cstddef>
 #include <filesystem>
 #include <iostream>
 #include <limits>
+#include <memory>
 #include <new>
 #include <string>
 #include <string_view>
@@ -21,6 +23,63 @@
 namespace OpenSubdivHex::Tools {
 
 enum ExitCode { kSuccess = 0, kFailure = 1, kBadUsage = 2 };
+
+/// \brief Help with descriptions behind the options, in lines of kWidth characters at most.
+class HelpFormatter : public CLI::Formatter {
+public:
+    static constexpr std::size_t kWidth = 99; ///< of a line
+
+    HelpFormatter() { column_width(kIndent); }
+
+    std::string make_option(CLI::Option const *option, bool isPositional) const override {
+        std::string const head =
+            "  " + make_option_name(option, isPositional) + make_option_opts(option);
+        std::string text;
+        for (std::string const &line : wrap(head, kWidth - 4)) {
+            text += (text.empty() ? "" : "\n    ") + line;
+        }
+        std::vector<std::string> const lines = wrap(make_option_desc(option), kWidth - kIndent);
+        for (std::size_t i = 0; i < lines.size(); ++i) {
+            bool const isBeside = i == 0 && head.size() + 1 < kIndent;
+            text += isBeside ? std::string(kIndent - head.size(), ' ')
+                             : "\n" + std::string(kIndent, ' ');
+            text += lines[i];
+        }
+        return text + "\n";
+    }
+
+    std::string make_usage(CLI::App const *app, std::string name) const override {
+        std::string text;
+        for (std::string const &line : wrap(CLI::Formatter::make_usage(app, name), kWidth)) {
+            text += line + "\n";
+        }
+        return text;
+    }
+
+private:
+    static constexpr std::size_t kIndent = 30; ///< of descriptions
+
+    /// Breaks a text at spaces, and at commas of what is longer than a line, and at its line ends.
+    static std::vector<std::string> wrap(std::string const &text, std::size_t width) {
+        std::vector<std::string> lines;
+        std::size_t begin = 0;
+        while (begin < text.size()) {
+            std::size_t const end = (std::min)(text.find('\n', begin), text.size());
+            std::size_t next = end;
+            if (end - begin > width) {
+                std::size_t const space = text.rfind(' ', begin + width);
+                std::size_t const comma = text.rfind(',', begin + width - 1);
+                next = space != std::string::npos && space > begin + width / 3 ? space
+                       : comma != std::string::npos && comma > begin           ? comma + 1
+                                                                               : begin + width;
+            }
+            lines.push_back(text.substr(begin, next - begin));
+            begin =
+                next + (next < text.size() && (text[next] == ' ' || text[next] == '\n') ? 1 : 0);
+        }
+        return lines;
+    }
+};
 
 /// Throws FileError where what was written to standard output has not come there.
 inline void FlushOutput() {
@@ -33,6 +92,12 @@ inline void FlushOutput() {
 inline void PrintWarning(std::string const &program, std::string const &path,
                          std::string const &text) {
     std::cerr << program << ": " << EscapeControls(path + ": warning: " + text) << "\n";
+}
+
+/// Prints "PROGRAM: FILE: hint: TEXT", one line, to standard error.
+inline void PrintHint(std::string const &program, std::string const &path,
+                      std::string const &text) {
+    std::cerr << program << ": " << EscapeControls(path + ": hint: " + text) << "\n";
 }
 
 /// The mesh that a program reads, as by ReadMesh(); prints the warnings.
@@ -54,6 +119,7 @@ int RunProgram(CLI::App &app, int argc, char const *const *argv, WORK work) {
         std::cerr << app.get_name() << ": " << EscapeControls(cause) << "\n";
         return kFailure;
     };
+    app.formatter(std::make_shared<HelpFormatter>());
     app.failure_message([](CLI::App const *failed, CLI::Error const &error) {
         return failed->get_name() + ": " + EscapeControls(error.what()) + "\nRun " +
                failed->get_name() + " with --help for more information.\n";

@@ -2,8 +2,8 @@
 #ifndef OPENSUBDIVHEX_TOOLS_SURFACE_H
 #define OPENSUBDIVHEX_TOOLS_SURFACE_H
 
-#include "far_ext/limitStencilTableFactory.h"
-#include "osd_ext/triangleIndices.h"
+#include "far_ext/stencilTableFactory.h"
+#include "osd_ext/polygonIndices.h"
 #include "vec3.h"
 
 #include <vector>

@@ -21,7 +21,7 @@ using namespace OpenSubdivHex;
 int main() {
     Tools::Mesh const cube = Tools::MakeCube();
     FarExt::TopologyRefinerFactory::Options options;
-    options.schemeOptions.faceMask = FarExt::FaceMask::Smooth;
+    options.hexSchemeOptions.faceMask = FarExt::FaceMask::Smooth;
     auto const refiner = FarExt::TopologyRefinerFactory::Create(Tools::DescribeTopology(cube),
                                                                 Sdc::Options(), options);
     if (!refiner) {

@@ -262,7 +262,7 @@ void run(Arguments const &arguments) {
     sdcOptions.SetVtxBoundaryInterpolation(Sdc::Options::VTX_BOUNDARY_EDGE_AND_CORNER);
 
     FarExt::TopologyRefinerFactory::Options options;
-    options.schemeOptions.faceMask = FarExt::FaceMask::Smooth;
+    options.hexSchemeOptions.faceMask = FarExt::FaceMask::Smooth;
     FarExt::CallStatus status;
     auto const refiner = FarExt::TopologyRefinerFactory::Create(DescribeTopology(mesh), sdcOptions,
                                                                 options, &status);

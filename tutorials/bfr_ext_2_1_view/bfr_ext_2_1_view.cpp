@@ -58,7 +58,7 @@ static std::set<std::pair<int, int>> collectSides(BfrExt::CellForest const &fore
 int main() {
     Tools::Mesh const cube = Tools::MakeCube();
     FarExt::TopologyRefinerFactory::Options options;
-    options.schemeOptions.faceMask = FarExt::FaceMask::Smooth;
+    options.hexSchemeOptions.faceMask = FarExt::FaceMask::Smooth;
     auto const refiner = FarExt::TopologyRefinerFactory::Create(Tools::DescribeTopology(cube),
                                                                 Sdc::Options(), options);
     if (!refiner) {

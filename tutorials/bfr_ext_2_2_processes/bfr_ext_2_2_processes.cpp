@@ -12,11 +12,11 @@
 //
 //     Usage: mpirun -n RANKS bfr_ext_2_2_processes MESH.ply LEVEL
 //
-#include "bfr_ext/plySink.h"
-#include "far_ext/threads.h"
+#include "far_ext/executor.h"
 #include "far_ext/topologyRefinerFactory.h"
 #include "tools/mesh/shapes.h"
 #include "tools/mesh/topologyDescriptor.h"
+#include "tools/stream/plySink.h"
 
 #include <mpi.h>
 
@@ -49,7 +49,7 @@ bool run(char const *path, int level, int rank, int numRanks) {
     BfrExt::PatchStream<float> const stream(*factory,
                                             BfrExt::PatchLevels(getFaceLevel, getEdgeLevel));
     FarExt::CallStatus status;
-    auto const numbering = BfrExt::PatchNumbering::Create(stream, &status);
+    auto const numbering = Tools::PatchNumbering::Create(stream, &status);
     if (!numbering) {
         std::fprintf(stderr, "%s\n", status.GetErrorMessage().c_str());
         return false;
@@ -65,7 +65,7 @@ bool run(char const *path, int level, int rank, int numRanks) {
         return MPI_File_write_at(file, MPI_Offset(offset), bytes, int(size), MPI_BYTE,
                                  MPI_STATUS_IGNORE) == MPI_SUCCESS;
     };
-    auto const sink = BfrExt::PlySink<float>::Create(*numbering, write, &status);
+    auto const sink = Tools::PlySink<float>::Create(*numbering, write, &status);
     bool isWritten = sink != nullptr;
     if (sink) {
         isWritten = MPI_File_set_size(file, MPI_Offset(sink->GetFileSize())) == MPI_SUCCESS;
@@ -77,7 +77,7 @@ bool run(char const *path, int level, int rank, int numRanks) {
         int const numFaces = factory->GetNumFaces();
         isWritten = stream.Run(cube.positions.data(), 3, numFaces * rank / numRanks,
                                numFaces * (rank + 1) / numRanks, *sink, &status) &&
-                    isWritten;
+                    sink->Flush() && isWritten;
     }
     isWritten = MPI_File_close(&file) == MPI_SUCCESS && isWritten;
     if (!isWritten) {

@@ -9,7 +9,7 @@
 //     derivatives there, whose cross product is the normal.  It is a Far::LimitStencilTable, which
 //     Osd's evaluators take.
 //
-#include "far_ext/limitStencilTableFactory.h"
+#include "far_ext/stencilTableFactory.h"
 #include "far_ext/topologyRefinerFactory.h"
 #include "tools/mesh/shapes.h"
 #include "tools/mesh/topologyDescriptor.h"

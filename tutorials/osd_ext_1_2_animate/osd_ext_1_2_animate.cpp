@@ -11,8 +11,8 @@
 //
 #include "far_ext/stencilTableFactory.h"
 #include "far_ext/topologyRefinerFactory.h"
-#include "osd_ext/stencilEvaluation.h"
-#include "osd_ext/triangleIndices.h"
+#include "osd_ext/polygonIndices.h"
+#include "osd_ext/stencilEvaluator.h"
 #include "tools/mesh/shapes.h"
 #include "tools/mesh/topologyDescriptor.h"
 

@@ -12,7 +12,7 @@
 //     the pictures themselves are made in tools/render (scene.h, renderer.h).
 //
 #include "cellSurface.h"
-#include "far_ext/limitStencilTableFactory.h"
+#include "far_ext/stencilTableFactory.h"
 #include "far_ext/topologyRefinerFactory.h"
 #include "tools/mesh/boundaryRule.h"
 #include "tools/mesh/fileError.h"
@@ -243,8 +243,8 @@ public:
         Sdc::Options sdcOptions;
         sdcOptions.SetVtxBoundaryInterpolation(settings.boundary);
         FarExt::TopologyRefinerFactory::Options refinerOptions;
-        refinerOptions.schemeOptions.faceMask = settings.mask;
-        refinerOptions.schemeOptions.firstStep = settings.firstStep;
+        refinerOptions.hexSchemeOptions.faceMask = settings.mask;
+        refinerOptions.hexSchemeOptions.firstStep = settings.firstStep;
         FarExt::CallStatus status;
         _refiner = FarExt::TopologyRefinerFactory::Create(DescribeTopology(mesh), sdcOptions,
                                                           refinerOptions, &status);
@@ -254,7 +254,7 @@ public:
         if (settings.isAdaptive) {
             // Surfaces begin with the faces of level 0 or, behind a first step, of level 1.
             FarExt::TopologyRefiner::UniformOptions refineOptions(
-                refinerOptions.schemeOptions.GetSurfaceLevel());
+                refinerOptions.hexSchemeOptions.GetSurfaceLevel());
             refineOptions.fullTopologyInLastLevel = true;
             if (!_refiner->RefineUniform(refineOptions, &status)) {
                 throw FileError(input, status.GetErrorMessage());

@@ -10,7 +10,6 @@
 //     surface.  Two things are of this library: FarExt::PatchMap finds the patch of a place in a face of the
 //     mesh, and OsdExt::CpuEvaluator evaluates faster than Osd::CpuEvaluator.
 //
-#include "far_ext/patchMap.h"
 #include "far_ext/patchTableFactory.h"
 #include "far_ext/topologyRefinerFactory.h"
 #include "osd_ext/cpuEvaluator.h"
@@ -44,7 +43,7 @@ struct CoordBuffer {
 int main() {
     Tools::Mesh const cube = Tools::MakeCube();
     FarExt::TopologyRefinerFactory::Options options;
-    options.schemeOptions.faceMask =
+    options.hexSchemeOptions.faceMask =
         FarExt::FaceMask::Smooth; // patches are closest to this surface
     auto const refiner = FarExt::TopologyRefinerFactory::Create(Tools::DescribeTopology(cube),
                                                                 Sdc::Options(), options);

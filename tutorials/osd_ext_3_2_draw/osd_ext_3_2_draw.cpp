@@ -73,7 +73,7 @@ void main() {
 
 std::unique_ptr<Far::PatchTable const> makePatches(Tools::Mesh const &mesh) {
     FarExt::TopologyRefinerFactory::Options options;
-    options.schemeOptions.faceMask =
+    options.hexSchemeOptions.faceMask =
         FarExt::FaceMask::Smooth; // patches are closest to this surface
     FarExt::CallStatus status;
     auto const refiner = FarExt::TopologyRefinerFactory::Create(Tools::DescribeTopology(mesh),

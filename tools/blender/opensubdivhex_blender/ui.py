@@ -22,7 +22,9 @@ def make_properties(update):
             name="Level", description="How many times the mesh is refined", default=2, min=0,
             max=10, soft_max=6, update=update),
         "mask": EnumProperty(
-            name="Mask", description="How a face makes its new points", default="SMOOTH",
+            name="Mask", default="SMOOTH",
+            description="How a face makes its new points. Smooth by default, since it is for "
+            "pictures; hexrefine and Python begin with the paper's Average",
             items=[("SMOOTH", "Smooth", "The smoothest, for renders"),
                    ("COSINE", "Cosine", "Doo and Sabin's mask: bounded curvature"),
                    ("AVERAGE", "Average", "The paper's mask: lumpy from level 4 on")],
@@ -33,7 +35,9 @@ def make_properties(update):
                    ("TRUNCATE", "Truncate", "Corners are cut off: for triangles")],
             update=update),
         "boundary": EnumProperty(
-            name="Boundary", description="What becomes of open borders", default="EDGE_ONLY",
+            name="Boundary", default="EDGE_ONLY",
+            description="What becomes of open borders. All by default, as in Blender's own "
+            "modifier; hexrefine and Python begin with the paper's rule",
             items=[("EDGE_ONLY", "All", "A smooth curve, corners too"),
                    ("EDGE_AND_CORNER", "Keep Corners", "A smooth curve between corners that stay"),
                    ("NONE", "Shrink", "The paper's rule: the border moves inward")],

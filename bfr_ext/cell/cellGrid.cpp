@@ -1,0 +1,211 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cellGrid.h"
+
+#include <algorithm>
+#include <map>
+
+namespace OpenSubdivHex::BfrExt::internal {
+
+namespace {
+
+// Cells of more points have no matrices of samples: beside faces of hundreds of vertices these would take minutes.
+constexpr int kMaxPointsOfCell = 128;
+constexpr int kMaxPointsOfFace = 512;
+
+// What lies between samples: of a quadratic surface up to a fifteenth of the range of heights, and of children, which
+// have fewer samples, mostly less than a quarter.
+constexpr double kFactorOfCell = 1.125;
+constexpr double kFactorOfChildren = 1.25;
+// Each step leaves a quarter of the thickness where the surface is smooth: with a margin, of the factors' size.
+constexpr double kLeastOfWhole = 0.3;
+constexpr double kExpected = 0.22;
+
+} // namespace
+
+CellGrid::CellGrid(int faceSize)
+    : _faceSize(faceSize), _places(faceSize, kNumSteps), _sources(_places.GetSize()) {
+    auto const &corners = HalfCell::kCorners;
+    add({faceSize > 0, 0, 1, {corners[0], corners[1], corners[2], corners[3]}}, kNumSteps,
+        {0, 0, 0});
+}
+
+CellGrid &CellGrid::Get(int faceSize) {
+    static thread_local std::map<int, CellGrid> grids;
+    return grids.try_emplace(faceSize, faceSize).first->second;
+}
+
+// Adds a cell, and those that some steps make of it.
+int CellGrid::add(Shape const &shape, int numSteps, Source source) {
+    std::size_t const number = _cells.size();
+    _cells.emplace_back();
+    _cells[number].factor = numSteps == kNumSteps ? kFactorOfCell : kFactorOfChildren;
+    int const numCorners = shape.isWhole ? _faceSize : 4;
+    for (int i = 0; i < numCorners; ++i) {
+        int const sample = int(_places.Find(
+            shape.isWhole ? LeafPlaces::Place{i, {shape.scale, 0}}
+                          : LeafPlaces::Place{shape.sector, shape.corners[std::size_t(i)]}));
+        _cells[number].corners.push_back(sample);
+        if (numSteps == 0) {
+            source.corner = i;
+            _sources[std::size_t(sample)] = source;
+        }
+    }
+    _cells[number].samples = _cells[number].corners;
+    int const numChildren = shape.isWhole ? _faceSize + 1 : 4;
+    for (int i = 0; numSteps > 0 && i < numChildren; ++i) {
+        (numSteps == kNumSteps ? source.child : source.grandchild) = i;
+        int const child = add(getChild(shape, i), numSteps - 1, source);
+        Cell &cell = _cells[number];
+        cell.children.push_back(child);
+        std::vector<int> const &samples = _cells[std::size_t(child)].samples;
+        cell.samples.insert(cell.samples.end(), samples.begin(), samples.end());
+    }
+    std::vector<int> &samples = _cells[number].samples;
+    std::sort(samples.begin(), samples.end());
+    samples.erase(std::unique(samples.begin(), samples.end()), samples.end());
+    return int(number);
+}
+
+CellGrid::Shape CellGrid::getChild(Shape const &shape, int child) {
+    if (!shape.isWhole) {
+        return {false, shape.sector, 0,
+                HalfCell::GetCornersOfChild(shape.corners, std::size_t(child))};
+    }
+    if (child == 0) {
+        return {true, 0, shape.scale / 2, {}};
+    }
+    return {false, child - 1, 0, HalfCell::GetCornersAtEdge<Pair>(shape.scale)};
+}
+
+void CellGrid::Sample(RefinedCells &cells, std::size_t cell, std::vector<double> &samples) const {
+    CellValues const &values = cells[cell];
+    if (values.GetNumPoints() > kMaxPointsOfCell) {
+        sampleByCorners(cells, cell, samples);
+        return;
+    }
+    samples.resize(3 * _places.GetSize());
+    SumUpPlaces(GetLeafMatrix<double>(values.GetType(), _places),
+                {values.GetPoint(0), std::ptrdiff_t(values.GetPaddedSize()), 3, nullptr,
+                 samples.data(), 3});
+}
+
+void CellGrid::Sample(CellType const &type, double const *controlPoints, RefinedCells &cells,
+                      std::vector<double> &samples) {
+    if (type.GetNumPoints() > kMaxPointsOfFace) {
+        cells.SetBase(type, controlPoints, 3);
+        sampleByCorners(cells, RefinedCells::kBase, samples);
+        return;
+    }
+    samples.resize(3 * _places.GetSize());
+    _evaluator.Evaluate(type, getPlan(type.IsInLattice()), 3, controlPoints, 3, samples.data(), 3);
+}
+
+void CellGrid::Sample(PlainFaceType const &type, double const *controlPoints, RefinedCells &,
+                      std::vector<double> &samples) {
+    samples.resize(3 * _places.GetSize());
+    _ringValues.Set(type.GetRings().GetRings(), std::size_t(type.GetNumPoints()), nullptr,
+                    controlPoints, 3, 3);
+    _evaluator.Evaluate(type, _ringValues, getPlan(false), samples.data(), 3);
+}
+
+// From the limits at the corners of cells.
+void CellGrid::sampleByCorners(RefinedCells &cells, std::size_t cell,
+                               std::vector<double> &samples) const {
+    samples.resize(3 * _sources.size());
+    for (std::size_t i = 0; i < _sources.size(); ++i) {
+        Source const &source = _sources[i];
+        std::size_t const child = cells.GetFirstChild(cell) + std::size_t(source.child);
+        cells.EvaluateCorner(cells.GetFirstChild(child) + std::size_t(source.grandchild),
+                             source.corner, &samples[3 * i]);
+    }
+}
+
+CellPlan const &CellGrid::getPlan(bool isInLattice) {
+    std::unique_ptr<CellPlan const> &plan = _plans[isInLattice ? 1 : 0];
+    if (!plan) {
+        std::vector<LeafPlaces::Place> places;
+        for (std::size_t i = 0; i < _places.GetSize(); ++i) {
+            places.push_back(_places[i]);
+        }
+        plan = std::make_unique<CellPlan const>(_faceSize, kNumSteps, places,
+                                                CellPlan::Use::AllPoints, isInLattice);
+    }
+    return *plan;
+}
+
+void CellGrid::measure(std::vector<double> const &samples, Cell const &cell,
+                       CellMeasures &measures) const {
+    auto const getSample = [&](int sample) { return ToVector3(&samples[3 * std::size_t(sample)]); };
+    Vector3 const origin = getSample(cell.corners[0]);
+    Vector3 area = {};
+    Vector3 last = {}; // from the origin
+    Vector3 sum = {};
+    double longest = 0; // square
+    for (std::size_t i = 1; i < cell.corners.size(); ++i) {
+        Vector3 const next = Subtract(getSample(cell.corners[i]), origin);
+        Vector3 const side = Subtract(next, last);
+        area = Add(area, Cross(last, next));
+        longest = std::max(longest, Dot(side, side));
+        sum = Add(sum, next);
+        last = next;
+    }
+    double const length = GetLength(area);
+    Vector3 const normal = length > 0 ? Scale(area, 1 / length) : Vector3{0, 0, 1};
+    Vector3 const center = Scale(sum, 1 / double(cell.corners.size()));
+    double radius = Dot(center, center); // square, of the corners
+    for (std::size_t i = 1; i < cell.corners.size(); ++i) {
+        Vector3 const d = Subtract(Subtract(getSample(cell.corners[i]), origin), center);
+        radius = std::max(radius, Dot(d, d));
+    }
+    double least = 0;
+    double largest = 0;
+    for (int const sample : cell.samples) {
+        double const height = Dot(normal, Subtract(getSample(sample), origin));
+        least = std::min(least, height);
+        largest = std::max(largest, height);
+    }
+    measures.thickness = cell.factor * (largest - least);
+    measures.ball = {Add(origin, center), cell.factor * std::sqrt(radius) + measures.thickness};
+    measures.longestSide = std::sqrt(std::max(longest, Dot(last, last)));
+}
+
+void CellGrid::Measure(std::vector<double> const &samples, CellMeasures &cell) const {
+    measure(samples, _cells[0], cell);
+}
+
+void CellGrid::MeasureChildren(std::vector<double> const &samples, CellMeasures const &cell,
+                               bool isSharp, CellMeasures *children) const {
+    // Half children of whole cells have sides as long as these.
+    double const usual = _faceSize > 0 ? cell.thickness : cell.thickness / 4;
+    for (std::size_t i = 0; i < _cells[0].children.size(); ++i) {
+        measure(samples, _cells[std::size_t(_cells[0].children[i])], children[i]);
+        if (_faceSize > 0 && i == 0) {
+            // The samples of a whole child lie on its diagonals, where a saddle may have no height.
+            children[i].thickness = std::max(children[i].thickness, kLeastOfWhole * cell.thickness);
+        }
+        // A child may be flatter than its own children, by chance.
+        children[i].childThickness =
+            isSharp ? children[i].thickness : kExpected * std::max(children[i].thickness, usual);
+    }
+}
+
+void CellGrid::AddPolygons(std::vector<double> const &samples, int cell,
+                           CellFacing::Maker &maker) const {
+    std::vector<double> corners;
+    auto const add = [&](auto const &self, Cell const &part) -> void {
+        for (int const child : part.children) {
+            self(self, _cells[std::size_t(child)]);
+        }
+        if (part.children.empty()) {
+            corners.clear();
+            for (int const corner : part.corners) {
+                double const *const p = &samples[3 * std::size_t(corner)];
+                corners.insert(corners.end(), p, p + 3);
+            }
+            maker.Add(corners);
+        }
+    };
+    add(add, _cells[cell == 0 ? 0 : std::size_t(_cells[0].children[std::size_t(cell) - 1])]);
+}
+
+} // namespace OpenSubdivHex::BfrExt::internal

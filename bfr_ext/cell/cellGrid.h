@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: Apache-2.0
+#ifndef OPENSUBDIVHEX_BFR_EXT_CELL_CELL_GRID_H
+#define OPENSUBDIVHEX_BFR_EXT_CELL_CELL_GRID_H
+
+#include "cellMeasures.h"
+#include "patchEvaluator.h"
+#include "refinedCells.h"
+
+#include <memory>
+#include <vector>
+
+namespace OpenSubdivHex::BfrExt::internal {
+
+/// \brief The cells up to two steps from a cell on, and where their corners are among the places of its LeafPlaces: from
+/// the surface at these places, the *samples*, a cell and its children are measured.
+///
+/// Samples of a cell are made by the matrix that its type has for tessellations, those of a base face as its
+/// tessellation of level 2 is.
+///
+/// One thread uses it at a time.
+class CellGrid {
+public:
+    /// \param faceSize  of whole cells; 0: of half cells
+    explicit CellGrid(int faceSize);
+    /// The grid of the calling thread.
+    static CellGrid &Get(int faceSize);
+
+    /// Children of the cell, without their own.
+    int GetNumChildren() const { return int(_cells[0].children.size()); }
+
+    /// @name Writes the samples, three numbers each
+    /// @{
+
+    /// Samples of a cell that is no base face.
+    void Sample(RefinedCells &cells, std::size_t cell, std::vector<double> &samples) const;
+    /// Samples of a base face, whose control points are three numbers each, without gaps.
+    void Sample(CellType const &type, double const *controlPoints, RefinedCells &cells,
+                std::vector<double> &samples);
+    /// Samples of a plain base face that is not in a lattice.
+    void Sample(PlainFaceType const &type, double const *controlPoints, RefinedCells &cells,
+                std::vector<double> &samples);
+    /// @}
+
+    /// Measures the cell, but where it faces.
+    void Measure(std::vector<double> const &samples, CellMeasures &cell) const;
+    /// \brief Measures the GetNumChildren() children, given the measures of the cell.
+    ///
+    /// \param isSharp  whether something sharp is near
+    void MeasureChildren(std::vector<double> const &samples, CellMeasures const &cell, bool isSharp,
+                         CellMeasures *children) const;
+    /// Adds the polygons that the cell, 0, or a child, from 1 on, is made of.
+    void AddPolygons(std::vector<double> const &samples, int cell, CellFacing::Maker &maker) const;
+
+private:
+    static constexpr int kNumSteps = 2;
+
+    struct Cell {
+        std::vector<int> corners;  // as samples
+        std::vector<int> samples;  // in the cell
+        std::vector<int> children; // in the grid
+        double factor;             // of the range of heights
+    };
+    // A cell two steps on, whose corner a sample is where no matrix makes it.
+    struct Source {
+        int child;
+        int grandchild;
+        int corner;
+    };
+    struct Shape {
+        bool isWhole;
+        int sector;
+        double scale;                // of whole cells
+        std::array<Pair, 4> corners; // of half cells
+    };
+
+    int add(Shape const &shape, int numSteps, Source source);
+    static Shape getChild(Shape const &shape, int child);
+    void sampleByCorners(RefinedCells &cells, std::size_t cell, std::vector<double> &samples) const;
+    CellPlan const &getPlan(bool isInLattice);
+    void measure(std::vector<double> const &samples, Cell const &cell,
+                 CellMeasures &measures) const;
+
+    int const _faceSize;
+    LeafPlaces const _places;
+    std::vector<Cell> _cells;
+    std::vector<Source> _sources; // by sample
+    std::unique_ptr<CellPlan const> _plans[2];
+    RingValues<double> _ringValues;
+    PatchEvaluator<double> _evaluator;
+};
+
+} // namespace OpenSubdivHex::BfrExt::internal
+
+#endif

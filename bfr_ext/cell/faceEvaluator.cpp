@@ -1,0 +1,277 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "faceEvaluator.h"
+
+#include "cellStencil.h"
+#include "patchEvaluator.h"
+#include "rateEvaluator.h"
+#include "refinedCells.h"
+
+#include <algorithm>
+
+namespace OpenSubdivHex::BfrExt::internal {
+
+template <typename REAL>
+void FaceEvaluator<REAL>::Evaluate(TessellationData const &tessellation, REAL *const results[6],
+                                   PointDescriptor const &resultDesc) const {
+    if (tessellation.HasCellPlans()) {
+        evaluateLeaves(tessellation, results, resultDesc);
+    } else {
+        evaluateTree(tessellation, results, resultDesc);
+    }
+    if (results[3]) {
+        evaluateSecond(tessellation, results, resultDesc);
+    }
+    if (results[1] && tessellation.parameterization.HasSubFaces()) {
+        turnDerivatives(tessellation, results, resultDesc);
+    }
+}
+
+template <typename REAL>
+void FaceEvaluator<REAL>::Evaluate(OpenSubdiv::Bfr::Tessellation const &tessellation,
+                                   REAL *const results[3],
+                                   PointDescriptor const &resultDesc) const {
+    useBorder([&](BorderEvaluator<REAL> &border) {
+        RateEvaluator<REAL> evaluator(tessellation, border, results, resultDesc.stride);
+        if (PlainFaceType const *const plain = _face.type.GetPlain()) {
+            evaluator.Evaluate(*plain);
+        } else {
+            evaluator.Evaluate(*_face.type, _controlPoints, _pointDesc.stride);
+        }
+    });
+}
+
+template <typename REAL>
+void FaceEvaluator<REAL>::evaluateSecond(TessellationData const &tessellation, REAL *const *results,
+                                         PointDescriptor const &resultDesc) const {
+    CellStencil stencil(*_face.type);
+    std::ptrdiff_t result = 0;
+    for (TessellationData::SectorCoords const &place : tessellation.places) {
+        BasePoint const point = MakeBasePoint(_face.size, place.sector, {place.start, place.end});
+        stencil.Find(point, false);
+        stencil.FindSecond(point);
+        sumUp(stencil.GetDuuWeights(), results[3] + result);
+        sumUp(stencil.GetDuvWeights(), results[4] + result);
+        sumUp(stencil.GetDvvWeights(), results[5] + result);
+        result += resultDesc.stride;
+    }
+}
+
+// Turns derivatives by the coordinates of the plane of the face into those by u and v.
+template <typename REAL>
+void FaceEvaluator<REAL>::turnDerivatives(TessellationData const &tessellation,
+                                          REAL *const *results,
+                                          PointDescriptor const &resultDesc) const {
+    auto const size = std::size_t(_pointDesc.size);
+    std::ptrdiff_t result = 0;
+    for (BfrPlace const &place : tessellation.GetBfrPlaces()) {
+        auto const at = [&](std::size_t kind) { return results[kind] + result; };
+        REAL *const first[2] = {at(1), at(2)};
+        if (results[3]) {
+            REAL *const second[3] = {at(3), at(4), at(5)};
+            ToUv(place, size, first, second);
+        } else {
+            ToUv<REAL>(place, size, first, nullptr);
+        }
+        result += resultDesc.stride;
+    }
+}
+
+// Calls function(evaluator) for the border of the face.
+template <typename REAL>
+template <typename FUNCTION>
+void FaceEvaluator<REAL>::useBorder(FUNCTION const &function) const {
+    // What it has taken of memory is kept for the next face, as below.
+    static thread_local BorderEvaluator<REAL> border;
+    auto const size = std::size_t(_pointDesc.size);
+    if (PlainFaceType const *const plain = _face.type.GetPlain()) {
+        border.SetFace(*plain, _face.GetTurns(), std::size_t(_face.numPoints), _controlPoints,
+                       _pointDesc.stride, size);
+    } else {
+        border.SetFace(*_face.type, _face.GetTurns(), _controlPoints, _pointDesc.stride, size);
+    }
+    function(border);
+}
+
+template <typename REAL>
+void FaceEvaluator<REAL>::evaluateLeaves(TessellationData const &tessellation, REAL *const *results,
+                                         PointDescriptor const &resultDesc) const {
+    // What it has taken of memory is kept for the next face.
+    static thread_local PatchEvaluator<REAL> evaluator;
+    PlainFaceType const *const plain = _face.type.GetPlain();
+    bool const isInLattice = _face.type.IsInLattice();
+    CellPlan const &plan = tessellation.GetCellPlan(isInLattice);
+    CellPlan const *const ofDerivatives =
+        results[1] ? &tessellation.GetCellPlan(isInLattice, true) : nullptr;
+    if (!plain) {
+        if (!isInLattice) {
+            // Mostly no other face has the same, so that it would be waited for.
+            _face.type->GetStep().Prefetch();
+        }
+        evaluator.Evaluate(*_face.type, plan, _pointDesc.size, _controlPoints, _pointDesc.stride,
+                           results[0], resultDesc.stride);
+        if (ofDerivatives) {
+            evaluator.EvaluateDerivatives(*_face.type, *ofDerivatives, _pointDesc.size,
+                                          _controlPoints, _pointDesc.stride, results[1], results[2],
+                                          resultDesc.stride);
+        }
+    }
+    useBorder([&](BorderEvaluator<REAL> &border) {
+        if (plain) {
+            RingValues<REAL> &values = border.GetRingValues();
+            evaluator.Evaluate(*plain, values, plan, results[0], resultDesc.stride);
+            if (ofDerivatives) {
+                evaluator.EvaluateDerivatives(*plain, values, *ofDerivatives, results[1],
+                                              results[2], resultDesc.stride);
+            }
+        }
+        evaluateBorder(tessellation, border, results[0], resultDesc);
+    });
+}
+
+// The control points are refined along the tree, as far as cells have corners that are asked for.
+template <typename REAL>
+void FaceEvaluator<REAL>::evaluateTree(TessellationData const &tessellation, REAL *const *results,
+                                       PointDescriptor const &resultDesc) const {
+    auto const length = std::size_t(_pointDesc.size);
+    std::vector<double> control;
+    for (int i = 0; i < _face.numPoints; ++i) {
+        REAL const *const point = _controlPoints + std::ptrdiff_t(i) * _pointDesc.stride;
+        control.insert(control.end(), point, point + _pointDesc.size);
+    }
+    CellTree const &tree = tessellation.tree->cells;
+    std::vector<double> point(2 * length);
+    std::vector<bool> isDone(tessellation.places.size());
+    auto const write = [&](int place, int kind, double const *from) {
+        std::copy(from, from + length, results[kind] + std::ptrdiff_t(place) * resultDesc.stride);
+    };
+    // What they have taken of memory is kept for the next face.
+    static thread_local RefinedCells cells;
+    using Corners = std::vector<TessellationData::CellCorner>;
+    auto const forEachCornerOf = [](int treeCell, Corners const &ofAll, auto const &function) {
+        auto corner = std::lower_bound(
+            ofAll.begin(), ofAll.end(), treeCell,
+            [](TessellationData::CellCorner const &a, int number) { return a.cell < number; });
+        for (; corner != ofAll.end() && corner->cell == treeCell; ++corner) {
+            function(*corner);
+        }
+    };
+    Corners const withDerivatives =
+        results[1] ? tessellation.FindCornersOfDerivatives() : Corners();
+    auto const evaluateCorners = [&](int treeCell, std::size_t cell) {
+        if (treeCell > 0) { // points on the border are made below
+            forEachCornerOf(treeCell, tessellation.tree->corners, [&](auto const &corner) {
+                cells.EvaluateCorner(cell, corner.corner, point.data());
+                write(corner.place, 0, point.data());
+            });
+        }
+        forEachCornerOf(treeCell, withDerivatives, [&](auto const &corner) {
+            cells[cell].EvaluateCorner(corner.corner, point.data(), point.data() + length);
+            write(corner.place, 1, point.data());
+            write(corner.place, 2, point.data() + length);
+            isDone[std::size_t(corner.place)] = true;
+        });
+    };
+    auto const visit = [&](auto const &self, int treeCell, std::size_t cell) -> void {
+        evaluateCorners(treeCell, cell);
+        if (!tree.IsRefined(treeCell)) {
+            return;
+        }
+        int const firstInTree = tree.GetFirstChild(treeCell);
+        std::size_t const first = cells.GetFirstChild(cell);
+        std::size_t const numCells = cells.GetSize();
+        for (int i = 0; i < tree.GetNumChildren(treeCell); ++i) {
+            // Only the first child has corners that the cell has not.
+            if (i == 0 || tree.IsRefined(firstInTree + i)) {
+                self(self, firstInTree + i, first + std::size_t(i));
+                cells.Drop(numCells);
+            }
+        }
+    };
+    if (PlainFaceType const *const plain = _face.type.GetPlain()) {
+        cells.SetBase(*plain, control.data(), _pointDesc.size);
+    } else {
+        cells.SetBase(*_face.type, control.data(), _pointDesc.size);
+    }
+    visit(visit, 0, RefinedCells::kBase);
+    // Derivatives where the tree has not the cell that they are from.
+    for (std::size_t i = 0; results[1] && i < isDone.size(); ++i) {
+        if (!isDone[i]) {
+            TessellationData::SectorCoords const &place = tessellation.places[i];
+            CellStencil stencil(*_face.type);
+            stencil.Find(MakeBasePoint(_face.size, place.sector, {place.start, place.end}), true);
+            std::ptrdiff_t const result = std::ptrdiff_t(i) * resultDesc.stride;
+            sumUp(stencil.GetDuWeights(), results[1] + result);
+            sumUp(stencil.GetDvWeights(), results[2] + result);
+        }
+    }
+    useBorder([&](BorderEvaluator<REAL> &border) {
+        evaluateBorder(tessellation, border, results[0], resultDesc);
+    });
+}
+
+// Makes the points on the border.
+template <typename REAL>
+void FaceEvaluator<REAL>::evaluateBorder(TessellationData const &tessellation,
+                                         BorderEvaluator<REAL> &evaluator, REAL *p,
+                                         PointDescriptor const &resultDesc) const {
+    if (tessellation.section) {
+        evaluateSectionBorder(tessellation, evaluator, p, resultDesc);
+        return;
+    }
+    auto const getResult = [&](int place) { return p + std::ptrdiff_t(place) * resultDesc.stride; };
+    for (std::size_t edge = 0; edge < std::size_t(_face.size); ++edge) {
+        int const first = tessellation.firstEdgeCoords[edge];
+        evaluator.EvaluateVertex(edge, getResult(first));
+        int const numPlaces = tessellation.firstEdgeCoords[edge + 1] - first - 1;
+        int const level = tessellation.GetEdgeLevel(edge);
+        if (level < 0) {
+            for (int place = first + 1; place <= first + numPlaces; ++place) {
+                TessellationData::SectorCoords const &coords =
+                    tessellation.places[std::size_t(place)];
+                evaluator.EvaluateKeptPoint(edge, {coords.start, coords.end}, getResult(place));
+            }
+        } else if (numPlaces > 0) {
+            evaluator.EvaluateEdge(edge, level, getResult(first + 1), resultDesc.stride);
+        }
+    }
+}
+
+// Those on the border of the face, to the bit as all points of the face are evaluated.
+template <typename REAL>
+void FaceEvaluator<REAL>::evaluateSectionBorder(TessellationData const &tessellation,
+                                                BorderEvaluator<REAL> &evaluator, REAL *p,
+                                                PointDescriptor const &resultDesc) const {
+    std::size_t const size = evaluator.GetSize();
+    int evaluatedEdge = -1;
+    std::vector<REAL> edgePoints;
+    for (TessellationData::BorderRun const &run : tessellation.section->border) {
+        auto const edge = std::size_t(run.edge);
+        for (int i = 0; i < run.count; ++i) {
+            int const place = run.place + i;
+            REAL *const result = p + std::ptrdiff_t(place) * resultDesc.stride;
+            if (run.index + i < 0) {
+                evaluator.EvaluateVertex(edge, result);
+                continue;
+            }
+            int const level = tessellation.GetEdgeLevel(edge);
+            if (level < 0) {
+                TessellationData::SectorCoords const &coords =
+                    tessellation.places[std::size_t(place)];
+                evaluator.EvaluateKeptPoint(edge, {coords.start, coords.end}, result);
+                continue;
+            }
+            if (run.edge != evaluatedEdge) {
+                int const numPoints = Polyline(level).GetNumPoints();
+                edgePoints.resize(std::size_t(numPoints) * size);
+                evaluator.EvaluateEdge(edge, level, edgePoints.data(), std::ptrdiff_t(size));
+                evaluatedEdge = run.edge;
+            }
+            std::copy_n(&edgePoints[std::size_t(run.index + i) * size], size, result);
+        }
+    }
+}
+
+template class FaceEvaluator<float>;
+template class FaceEvaluator<double>;
+
+} // namespace OpenSubdivHex::BfrExt::internal

@@ -1,0 +1,513 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tessellationData.h"
+
+#include "cellStencil.h"
+
+#include "far_ext/vtr/faceCoords.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include <opensubdiv/far/types.h>
+
+namespace OpenSubdivHex::BfrExt::internal {
+
+namespace {
+
+constexpr int kInvalid = OpenSubdiv::Far::INDEX_INVALID;
+
+// Others are mostly those of one face, so that what is made for them is not used again.
+constexpr int kMaxCellsOfPlan = 128;
+
+// By edge, the level of which it has the polyline; -1: none.
+std::vector<int> findEdgeLevels(std::vector<Polyline> const &edges) {
+    std::vector<int> levels;
+    levels.reserve(edges.size());
+    for (Polyline const &edge : edges) {
+        // Levels 0 and 1 give an edge the same.
+        int level = 0;
+        while (level <= Polyline::kLastLevel &&
+               Polyline(level).GetNumPoints() < edge.GetNumPoints()) {
+            ++level;
+        }
+        levels.push_back(level <= Polyline::kLastLevel && Polyline(level) == edge ? level : -1);
+    }
+    return levels;
+}
+
+// Cuts convex polygons, with vertices in straight lines, into triangles that all have an area: n corners take
+// O(n log n) steps.
+class Triangulator {
+public:
+    explicit Triangulator(std::vector<double> const &coords) : _coords(coords) {}
+
+    // Appends the triangles of a polygon, corner by corner.
+    void Add(std::vector<int> const &polygon, std::vector<std::array<int, 3>> &triangles) {
+        setPolygon(polygon);
+        for (std::size_t numLeft = polygon.size(); numLeft > 3; --numLeft) {
+            std::size_t const ear = findEar();
+            triangles.push_back(getCorner(ear));
+            cut(ear);
+        }
+        triangles.push_back({polygon[_first], polygon[_next[_first]], polygon[_prev[_first]]});
+    }
+
+private:
+    void setPolygon(std::vector<int> const &polygon) {
+        std::size_t const size = polygon.size();
+        _polygon = &polygon;
+        _first = 0;
+        _prev.resize(size);
+        _next.resize(size);
+        _isKept.assign(size, false);
+        for (std::size_t i = 0; i < size; ++i) {
+            _prev[i] = i == 0 ? size - 1 : i - 1;
+            _next[i] = i + 1 == size ? 0 : i + 1;
+        }
+        _numLeaves = 1;
+        while (_numLeaves < size) {
+            _numLeaves *= 2;
+        }
+        _best.assign(2 * _numLeaves, 0.0);
+        for (std::size_t i = 0; i < size; ++i) {
+            _best[_numLeaves + i] = getQuality(getCorner(i));
+        }
+        for (std::size_t node = _numLeaves - 1; node > 0; --node) {
+            _best[node] = std::max(_best[2 * node], _best[2 * node + 1]);
+        }
+    }
+
+    void setQuality(std::size_t i, double quality) {
+        std::size_t node = _numLeaves + i;
+        _best[node] = quality;
+        while ((node /= 2) > 0) {
+            _best[node] = std::max(_best[2 * node], _best[2 * node + 1]);
+        }
+    }
+
+    void cut(std::size_t ear) {
+        std::size_t const prev = _prev[ear];
+        std::size_t const next = _next[ear];
+        _next[prev] = next;
+        _prev[next] = prev;
+        _first = ear == _first ? next : _first;
+        setQuality(ear, 0);
+        for (std::size_t const i : {prev, next}) {
+            setQuality(i, _isKept[i] ? 0 : getQuality(getCorner(i)));
+        }
+    }
+
+    std::array<int, 3> getCorner(std::size_t i) const {
+        return {(*_polygon)[_prev[i]], (*_polygon)[i], (*_polygon)[_next[i]]};
+    }
+
+    double getX(int vert) const { return _coords[2 * std::size_t(vert)]; }
+    double getY(int vert) const { return _coords[2 * std::size_t(vert) + 1]; }
+
+    double getSquare(int from, int to) const {
+        return std::pow(getX(to) - getX(from), 2) + std::pow(getY(to) - getY(from), 2);
+    }
+
+    // Twice the area over the square of the longest side.
+    double getQuality(std::array<int, 3> const &t) const {
+        double const area = (getX(t[1]) - getX(t[0])) * (getY(t[2]) - getY(t[0])) -
+                            (getY(t[1]) - getY(t[0])) * (getX(t[2]) - getX(t[0]));
+        return area /
+               std::max({getSquare(t[0], t[1]), getSquare(t[1], t[2]), getSquare(t[2], t[0])});
+    }
+
+    // Whether all that would be left were a straight line, which the ends of the cut lie on.  Where it is not, the
+    // first corners tell, since the polygon is convex.
+    bool isRestFlat(std::size_t ear) const {
+        int const start = (*_polygon)[_next[ear]];
+        int const end = (*_polygon)[_prev[ear]];
+        for (std::size_t i = _next[_next[ear]]; i != _prev[ear]; i = _next[i]) {
+            if (getQuality({start, (*_polygon)[i], end}) > kLeastQuality) {
+                return false;
+            }
+        }
+        return true;
+    }
+
+    // The best triangle that does not leave a line behind; the first of those that are as good.
+    std::size_t findEar() {
+        while (_best[1] > kLeastQuality) {
+            double const least = std::max(_best[1] / (1 + kLeastQuality), kLeastQuality);
+            std::size_t node = 1;
+            while (node < _numLeaves) {
+                node *= 2;
+                node += _best[node] < least ? 1 : 0;
+            }
+            std::size_t const ear = node - _numLeaves;
+            if (!isRestFlat(ear)) {
+                return ear;
+            }
+            // What is cut later shortens the line, and leaves a line.
+            _isKept[ear] = true;
+            setQuality(ear, 0);
+        }
+        return _first;
+    }
+
+    static constexpr double kLeastQuality = 1e-9;
+
+    std::vector<double> const &_coords;
+    // Of the polygon that is cut, by its corners as they were given.
+    std::vector<int> const *_polygon = nullptr;
+    std::size_t _first = 0; // of those that are left
+    std::vector<std::size_t> _prev;
+    std::vector<std::size_t> _next;
+    std::vector<bool> _isKept; // to the end, since a line would be left
+    // A tree of the best qualities, the root at 1 and the corners from _numLeaves on.
+    std::vector<double> _best;
+    std::size_t _numLeaves = 0;
+};
+
+// Whether triangles have more indices than an int counts.
+bool areTooMany(double numTriangles) {
+    return 3 * numTriangles > double(std::numeric_limits<int>::max());
+}
+
+} // namespace
+
+bool TessellationData::SetTree(CellTree const &cells, Polyline const edges[],
+                               LevelTessellation::Options const &options) {
+    std::vector<Polyline> polylines;
+    bool hasAllPoints = true;
+    for (int edge = 0; edge < cells.GetFaceSize(); ++edge) {
+        polylines.push_back(cells.GetEdgePolyline(edge));
+        if (edges) {
+            hasAllPoints = hasAllPoints && edges[edge].Contains(polylines.back());
+            polylines.back() = edges[edge];
+        }
+    }
+    // A half cell makes two triangles at least.
+    if (!setOptions(options) || !hasAllPoints || areTooMany(2.0 * (cells.GetNumLeaves() - 1))) {
+        return false;
+    }
+    parameterization = Parameterization(cells.GetFaceSize());
+    CellMesh const mesh(cells, polylines.data());
+    std::vector<int> edgeLevels = findEdgeLevels(polylines);
+    tree = Tree{cells, std::move(polylines), std::move(edgeLevels), {}};
+    if (cells.GetNumCells() <= kMaxCellsOfPlan) {
+        _cellPlans = std::make_unique<CellPlans>();
+    }
+    return setCells(mesh);
+}
+
+bool TessellationData::SetSection(FaceSections const &sections, int number,
+                                  LevelTessellation::Options const &options) {
+    if (!setOptions(options)) {
+        return false;
+    }
+    int const size = sections.GetFaceSize();
+    parameterization = Parameterization(size);
+    section = Section{number, sections.GetNumSections(), {}};
+    CellShape shape = {};
+    CellTree cells = sections.MakeTree(number, &shape);
+    // Those that it has a side on.
+    std::vector<Polyline> edges(static_cast<std::size_t>(size));
+    std::vector<int> const polygon = sections.GetPolygon(number);
+    for (std::size_t i = 0; i < polygon.size(); ++i) {
+        CellMesh::Vertex const &start = sections.GetVertices()[std::size_t(polygon[i])];
+        CellMesh::Vertex const &end =
+            sections.GetVertices()[std::size_t(polygon[(i + 1) % polygon.size()])];
+        if (sections.AreOnEdge(start, end)) {
+            edges[std::size_t(start.sector)] = sections.GetEdge(start.sector);
+        }
+    }
+    CellMesh const mesh(cells, edges.data(), shape);
+    levels = sections.GetLevels();
+    if (levels.empty()) {
+        // Points on the other edges are made as those of the face, too.
+        std::vector<Polyline> ofFace;
+        ofFace.reserve(edges.size());
+        for (int edge = 0; edge < size; ++edge) {
+            ofFace.push_back(sections.GetEdge(edge));
+        }
+        tree = Tree{cells, std::move(edges), findEdgeLevels(ofFace), {}};
+    } else {
+        _cellPlans = std::make_unique<CellPlans>();
+    }
+    return setSectionCells(mesh, sections);
+}
+
+bool TessellationData::setOptions(LevelTessellation::Options const &options) {
+    facetSize = options.GetFacetSize();
+    facetStride = options.GetFacetStride() == 0 ? facetSize : options.GetFacetStride();
+    coordStride = options.GetCoordStride() == 0 ? 2 : options.GetCoordStride();
+    firstFacetIndices = {0};
+    if (coordStride < 2 || (facetSize != 0 && facetSize != 3 && facetSize != 4) ||
+        facetStride < facetSize) {
+        return false;
+    }
+    facetStride = facetSize == 0 ? 0 : facetStride;
+    return true;
+}
+
+bool TessellationData::SetLevels(Parameterization const &ofFace, int numLevels, int const ofEdges[],
+                                 LevelTessellation::Options const &options) {
+    int const size = ofFace.GetFaceSize();
+    bool const areLevelsValid = (numLevels == 1 || numLevels == size || numLevels == size + 1) &&
+                                std::all_of(ofEdges, ofEdges + numLevels, [](int level) {
+                                    return 0 <= level && level <= LevelTessellation::kLastLevel;
+                                });
+    if (!setOptions(options) || !ofFace.IsValid() || !areLevelsValid) {
+        return false;
+    }
+    parameterization = ofFace;
+    if (numLevels == 1) {
+        levels.assign(std::size_t(size) + 1, ofEdges[0]);
+    } else {
+        levels.assign(ofEdges, ofEdges + size);
+        levels.push_back(numLevels > size ? ofEdges[size]
+                                          : *std::max_element(ofEdges, ofEdges + size));
+    }
+    if (areTooMany(2 * (FaceSections::CountLeaves(levels) - 1))) {
+        return false;
+    }
+    std::vector<Polyline> edges;
+    std::for_each(levels.begin(), levels.end() - 1, [&](int level) { edges.emplace_back(level); });
+    _cellPlans = std::make_unique<CellPlans>();
+    return setCells(CellMesh(CellTree(size, levels.data(), levels.back()), edges.data()));
+}
+
+// The highest of the places that a plan has.
+int TessellationData::getLevelOfPlaces(bool isOfDerivatives) const {
+    if (!tree) {
+        return isOfDerivatives ? *std::max_element(levels.begin(), levels.end()) : levels.back();
+    }
+    int level = tree->cells.GetMaxLevel();
+    for (Polyline const &edge : tree->edges) {
+        // Places of a level are multiples of that of its first one.
+        for (int const place : edge.GetPlaces()) {
+            while (isOfDerivatives && place % (Polyline::kLength >> level) != 0) {
+                ++level;
+            }
+        }
+    }
+    return level;
+}
+
+CellPlan const &TessellationData::GetCellPlan(bool isInLattice, bool isOfDerivatives) const {
+    std::size_t const kind[2] = {isInLattice ? 1U : 0U, isOfDerivatives ? 1U : 0U};
+    std::unique_ptr<CellPlan const> &plan = _cellPlans->plans[kind[0]][kind[1]];
+    std::call_once(_cellPlans->once[kind[0]][kind[1]], [&] {
+        std::vector<LeafPlaces::Place> leafPlaces;
+        leafPlaces.reserve(places.size());
+        for (SectorCoords const &place : places) {
+            leafPlaces.push_back({place.sector, {place.start, place.end}});
+        }
+        plan = std::make_unique<CellPlan const>(
+            GetFaceSize(), getLevelOfPlaces(isOfDerivatives), leafPlaces,
+            isOfDerivatives ? CellPlan::Use::Derivatives : CellPlan::Use::Points, isInLattice);
+    });
+    return *plan;
+}
+
+// Takes the vertices of the mesh in an order, those of the boundary first, and returns their places.
+std::vector<int> TessellationData::setPlaces(CellMesh const &mesh, std::vector<int> const &order) {
+    std::vector<CellMesh::Vertex> const &verts = mesh.GetVertices();
+    std::vector<int> ofVertices(verts.size(), kInvalid);
+    FarExt::internal::BasePolygon const polygon(GetFaceSize());
+    coords.resize(2 * order.size());
+    places.reserve(order.size());
+    for (std::size_t place = 0; place < order.size(); ++place) {
+        CellMesh::Vertex const &vert = verts[std::size_t(order[place])];
+        ofVertices[std::size_t(order[place])] = int(place);
+        double const start = std::ldexp(double(vert.a), -CellShape::kBits);
+        double const end = std::ldexp(double(vert.b), -CellShape::kBits);
+        Pair const coordsOfPlace =
+            FarExt::internal::FindFaceCoords(polygon, vert.sector, {start, end});
+        std::copy(coordsOfPlace.begin(), coordsOfPlace.end(), &coords[2 * place]);
+        places.push_back({vert.sector, start, end});
+        if (tree && vert.cell >= 0) {
+            tree->corners.push_back({vert.cell, vert.corner, int(place)});
+        }
+    }
+    if (tree) {
+        sortByCell(tree->corners);
+    }
+    return ofVertices;
+}
+
+std::vector<BfrPlace> const &TessellationData::GetBfrPlaces() const {
+    std::call_once(_onceBfrPlaces, [&] {
+        _bfrPlaces.reserve(places.size());
+        for (std::size_t i = 0; i < places.size(); ++i) {
+            _bfrPlaces.push_back(
+                FindBfrPlace(parameterization, {coords[2 * i], coords[2 * i + 1]}, 0));
+        }
+    });
+    return _bfrPlaces;
+}
+
+void TessellationData::sortByCell(std::vector<CellCorner> &corners) {
+    std::sort(corners.begin(), corners.end(), [](CellCorner const &a, CellCorner const &b) {
+        return a.cell != b.cell ? a.cell < b.cell : a.corner < b.corner;
+    });
+}
+
+std::vector<TessellationData::CellCorner> TessellationData::FindCornersOfDerivatives() const {
+    CellTree const &cells = tree->cells;
+    std::vector<CellCorner> corners;
+    corners.reserve(places.size());
+    for (std::size_t place = 0; place < places.size(); ++place) {
+        int const sector = places[place].sector;
+        Pair inCell = {places[place].start, places[place].end};
+        int cell = 0;
+        bool isWhole = true;
+        int corner = -1;
+        while ((corner = FindCellCorner(isWhole ? GetFaceSize() : 0, sector, inCell)) < 0 &&
+               cells.IsRefined(cell)) {
+            CellStep const step = FindCellStep(isWhole, sector, inCell);
+            inCell = step.map->Apply(inCell); // without rounding
+            cell = cells.GetFirstChild(cell) + int(step.child);
+            isWhole = step.isChildWhole;
+        }
+        if (corner >= 0) {
+            corners.push_back({cell, corner, int(place)});
+        }
+    }
+    sortByCell(corners);
+    return corners;
+}
+
+// All that the mesh has.
+bool TessellationData::setCells(CellMesh const &mesh) {
+    std::size_t const numVerts = mesh.GetVertices().size();
+    std::vector<bool> isOnBoundary(numVerts);
+    std::vector<int> order;
+    order.reserve(numVerts);
+    for (int edge = 0; edge < GetFaceSize(); ++edge) {
+        std::vector<int> const edgeVerts = mesh.GetEdgeVertices(edge);
+        firstEdgeCoords.push_back(int(order.size()));
+        order.insert(order.end(), edgeVerts.begin(), edgeVerts.end() - 1);
+    }
+    firstEdgeCoords.push_back(int(order.size()));
+    for (int const vert : order) {
+        isOnBoundary[std::size_t(vert)] = true;
+    }
+    for (std::size_t vert = 0; vert < numVerts; ++vert) {
+        if (!isOnBoundary[vert]) {
+            order.push_back(int(vert));
+        }
+    }
+    return setFacets(mesh, setPlaces(mesh, order));
+}
+
+// What the polygons of a section have: the mesh has more beside it.
+bool TessellationData::setSectionCells(CellMesh const &mesh, FaceSections const &sections) {
+    std::vector<int> const polygon = sections.GetPolygon(section->number);
+    std::vector<int> order;
+    for (std::size_t i = 0; i < polygon.size(); ++i) {
+        CellMesh::Vertex const &start = sections.GetVertices()[std::size_t(polygon[i])];
+        CellMesh::Vertex const &end =
+            sections.GetVertices()[std::size_t(polygon[(i + 1) % polygon.size()])];
+        int const first = int(order.size());
+        firstEdgeCoords.push_back(first);
+        order.push_back(mesh.Find(start.sector, {start.a, start.b}));
+        // Of two vertices in different sectors, one lies on the line between these.
+        int const size = GetFaceSize();
+        if (start.sector == end.sector) {
+            mesh.AppendBetween(start.sector, {start.a, start.b}, {end.a, end.b}, order);
+        } else if (end.b == 0 && end.sector == (start.sector + 1) % size) {
+            mesh.AppendBetween(start.sector, {start.a, start.b}, {0, end.a}, order);
+        } else {
+            mesh.AppendBetween(end.sector, {0, start.a}, {end.a, end.b}, order);
+        }
+        if (!sections.IsOnEdge(start)) {
+            continue;
+        }
+        int const before =
+            start.b == 0
+                ? 0
+                : 1 + sections.CountPointsBefore(start.sector, sections.GetPlaceOnEdge(start));
+        int const count = sections.AreOnEdge(start, end) ? int(order.size()) - first : 1;
+        section->border.push_back({start.sector, before - 1, count, first});
+    }
+    firstEdgeCoords.push_back(int(order.size()));
+    std::vector<bool> isInside(mesh.GetVertices().size());
+    mesh.ForEachCell([&](CellMesh::Polygon &cell) {
+        for (int const vert : cell.verts) {
+            isInside[std::size_t(vert)] = true;
+        }
+    });
+    for (int const vert : order) {
+        isInside[std::size_t(vert)] = false;
+    }
+    for (std::size_t vert = 0; vert < isInside.size(); ++vert) {
+        if (isInside[vert]) {
+            order.push_back(int(vert));
+        }
+    }
+    return setFacets(mesh, setPlaces(mesh, order));
+}
+
+// All places in a face that is a regular polygon.
+std::vector<double> TessellationData::findRegularCoords() const {
+    std::vector<double> result;
+    result.reserve(coords.size());
+    double const unit = 2 * FarExt::internal::kPi / GetFaceSize();
+    for (SectorCoords const &place : places) {
+        double const start = unit * place.sector;
+        double const end = unit * (place.sector + 1);
+        result.push_back(place.start * std::cos(start) + place.end * std::cos(end));
+        result.push_back(place.start * std::sin(start) + place.end * std::sin(end));
+    }
+    return result;
+}
+
+bool TessellationData::setFacets(CellMesh const &mesh, std::vector<int> const &placesOfVertices) {
+    auto const addFacet = [&](int const *facet, int numVerts, int level) {
+        facetIndices.insert(facetIndices.end(), facet, facet + numVerts);
+        firstFacetIndices.push_back(int(facetIndices.size()));
+        facetLevels.push_back(level);
+        maxFacetSize = std::max(maxFacetSize, numVerts);
+    };
+    // What Euler says of triangles; quads and polygons are fewer.
+    std::size_t const numTriangles =
+        2 * std::size_t(GetNumCoords()) - std::size_t(GetNumBoundaryCoords()) - 2;
+    if (areTooMany(double(numTriangles))) {
+        return false;
+    }
+    if (facetSize == 0) {
+        for (CellMesh::Polygon &polygon : mesh.GetMergedPolygons()) {
+            for (int &vert : polygon.verts) {
+                vert = placesOfVertices[std::size_t(vert)];
+            }
+            addFacet(polygon.verts.data(), int(polygon.verts.size()), polygon.level);
+        }
+    } else {
+        std::size_t const numFacets = facetSize == 3 ? numTriangles : numTriangles / 2;
+        facetIndices.reserve(std::size_t(facetSize) * numFacets);
+        firstFacetIndices.reserve(numFacets + 1);
+        facetLevels.reserve(numFacets);
+        std::vector<double> const regularCoords = findRegularCoords();
+        Triangulator triangulator(regularCoords);
+        std::vector<std::array<int, 3>> triangles;
+        mesh.ForEachCell([&](CellMesh::Polygon &polygon) {
+            std::vector<int> &facet = polygon.verts;
+            for (int &vert : facet) {
+                vert = placesOfVertices[std::size_t(vert)];
+            }
+            if (facetSize == 4 && facet.size() == 4) {
+                addFacet(facet.data(), 4, polygon.level);
+                return;
+            }
+            triangles.clear();
+            triangulator.Add(facet, triangles);
+            for (std::array<int, 3> const &triangle : triangles) {
+                addFacet(triangle.data(), 3, polygon.level);
+            }
+        });
+    }
+    facetIndices.shrink_to_fit();
+    firstFacetIndices.shrink_to_fit();
+    facetLevels.shrink_to_fit();
+    return true;
+}
+
+} // namespace OpenSubdivHex::BfrExt::internal
