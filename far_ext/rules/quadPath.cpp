@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "quadPath.h"
 
-#include "far_ext/mask.h"
+#include "far_ext/rules/mask.h"
 
 #include <algorithm>
 #include <array>
