@@ -3,6 +3,6 @@
 
 namespace OpenSubdivHex::BfrExt::internal {
 
-CellType const &BaseType::operator*() const { return _type ? *_type : _plain->Get(); }
+CellType const &BaseType::operator*() const { return _plain ? _plain->Get() : *_type; }
 
 } // namespace OpenSubdivHex::BfrExt::internal

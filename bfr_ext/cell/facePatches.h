@@ -23,7 +23,7 @@ inline constexpr int kLastPatchLevel = 6;
 /// They are in the order of the cells: depth first, with children in the order of RefineCell().
 int GetNumFacePatches(int size, int level);
 
-/// A place in one of the patches of a face.
+/// A place in one of the patches of a face; its derivatives are there as far as they were asked for.
 struct PatchPlace {
     int patch;
     double s;
