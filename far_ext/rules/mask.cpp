@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 namespace OpenSubdivHex::FarExt {
 
@@ -29,6 +30,15 @@ long double smoothWeight(int j, int n) {
     long double const sum = 7 + 6 * cosOfTurn(j, n) + 2 * cosOfTurn(2 * j, n);
     return ((j == 0 ? n : 0) + sum) / (8.0L * n);
 }
+
+// The eigenvalues are 1/2, 1/4 and then 1/6 in place of 1/8: the least for which weights fall all the way around.
+long double fallingSmoothWeight(int j, int n) {
+    long double const sum = 5 + 4 * cosOfTurn(j, n) + cosOfTurn(2 * j, n);
+    return ((j == 0 ? n : 0) + sum) / (6.0L * n);
+}
+
+// The sides of the largest polygon where less the weights of ghosts none of Smooth is negative.
+constexpr int kMaxHalvedBySmooth = 10;
 
 long double varyingWeight(int j, int n) { return ((j == 0 ? n : 0) + 1) / (2.0L * n); }
 
@@ -58,23 +68,41 @@ void ComputeFaceVertexMask(FaceMask mask, Interpolation interpolation, int n, do
     }
 }
 
-void ComputeHalfFaceVertexMask(FaceMask mask, Interpolation interpolation, double *weights) {
-    long double w[4]; // by distance in the completed hexagon
-    for (int j = 0; j < 4; ++j) {
-        w[j] = faceWeight(mask, interpolation, j, 6);
+void ComputeHalfFaceVertexMask(FaceMask mask, Interpolation interpolation, int n, double *weights) {
+    int const half = n - 1; // sides of the polygon from V to W
+    int const size = 2 * half;
+    std::vector<long double> ofDistance;
+    bool const isFalling = mask == FaceMask::Smooth && interpolation == Interpolation::Vertex &&
+                           size > kMaxHalvedBySmooth;
+    for (int j = 0; j < size; ++j) {
+        ofDistance.push_back(isFalling ? fallingSmoothWeight(j, size)
+                                       : faceWeight(mask, interpolation, j, size));
     }
-    long double const atLong = w[1] + 1.5L * w[2] + 0.5L * w[3]; // the end beside the corner
-    long double const atOther = 1.5L * (w[2] + w[3]);
-    long double const atSelf = w[0] - w[2];
-    long double const atTwin = w[1] - w[3];
-    long double const rows[4][4] = {{0.75L, 0.25L, 0, 0},
-                                    {0.25L, 0.75L, 0, 0},
-                                    {atOther, atLong, atSelf, atTwin},
-                                    {atLong, atOther, atTwin, atSelf}};
-    for (int i = 0; i < 4; ++i) {
-        for (int j = 0; j < 4; ++j) {
-            weights[4 * i + j] = double(rows[i][j]);
+    // Between places in the polygon, that of V being 0, of W half, and then those of the Q.
+    auto const weightAt = [&](int from, int to) {
+        return ofDistance[std::size_t((to - from + size) % size)];
+    };
+    auto const setRow = [&](int row, int column, long double weight) {
+        weights[std::size_t(row) * std::size_t(n) + std::size_t(column)] = double(weight);
+    };
+    for (int i = 0; i < 2; ++i) {
+        for (int j = 0; j < n; ++j) {
+            setRow(i, j, j == i ? 0.75L : j < 2 ? 0.25L : 0.0L);
         }
+    }
+    for (int i = 2; i < n; ++i) {
+        int const place = half + i - 1;
+        long double ofV = weightAt(place, 0);
+        long double ofW = weightAt(place, half);
+        for (int ghost = 1; ghost < half; ++ghost) {
+            long double const weight = weightAt(place, ghost);
+            long double const c = cosOfTurn(ghost, size);
+            ofV += (1 + c) * weight;
+            ofW += (1 - c) * weight;
+            setRow(i, n - ghost, weightAt(place, size - ghost) - weight);
+        }
+        setRow(i, 0, ofV);
+        setRow(i, 1, ofW);
     }
 }
 

@@ -20,14 +20,17 @@ enum class Interpolation {
 OPENSUBDIVHEX_API void ComputeFaceVertexMask(FaceMask mask, Interpolation interpolation, int n,
                                              double *weights);
 
-/// \brief Writes the 4 x 4 weights of a half face V, W, Q, P, a half-hexagon whose long side V-W is
-/// a sharp boundary or crease: row i has the weights of the four vertices for the F-vertex of
-/// corner i.
+/// \brief Writes the \p n x \p n weights of a half face V, W, Q_2 ... Q_n-1, half of a polygon of 2 (n - 1) sides whose
+/// side V-W is a sharp boundary or crease: row i has the weights of the vertices for the F-vertex of corner i.
 ///
-/// On the long side P_V = (3 V + W)/4.  The other two corners follow the mask of the hexagon that
-/// is completed by the ghosts Q* = (3 V + W)/2 - P and P* = (V + 3 W)/2 - Q, in the order
-/// V, Q*, P*, W, Q, P; the weights come out non-negative.
-OPENSUBDIVHEX_API void ComputeHalfFaceVertexMask(FaceMask mask, Interpolation interpolation,
+/// \p n is at least 3, and 4 for half a hexagon.  On the long side P_V = (3 V + W)/4.  The other corners follow the mask of
+/// the polygon that is completed by ghosts, the mirror images of the Q across V-W.  With the vertices of the polygon at the
+/// angles pi p/(n - 1) around its centre, from V on, a ghost and its Q sum to (1 + cos) V + (1 - cos) W.  So those of half
+/// a hexagon V, W, Q, P are (3 V + W)/2 - P and (V + 3 W)/2 - Q.
+///
+/// The eigenvalues are those along the side, 1 and 1/2, and the mask's own of the polygon that are odd across it: with
+/// Smooth 1/2, 1/4, and 1/8 for the rest; from n = 7 on 1/6 for the rest, without which weights would be negative.
+OPENSUBDIVHEX_API void ComputeHalfFaceVertexMask(FaceMask mask, Interpolation interpolation, int n,
                                                  double *weights);
 
 /// \brief Writes the \p n weights for the new point of the edge from vertex 0 to vertex 1 of a

@@ -176,13 +176,16 @@ void relateVFaces(Refinement const &mesh, Refinement const &values, FVarLevel co
     }
     std::vector<Index> vFaceOfCorner(pValues.numCorners, Far::INDEX_INVALID);
     for (Index face = cValues.numFaces - cValues.numVFaces; face < cValues.numFaces; ++face) {
-        // All of its F-vertices, since it may begin with another than the mesh's does.
+        // All of its F-vertices, since it may begin with another than the mesh's does; of a truncation those alone
+        // whose corners are at the vertex.
         Far::ConstIndexArray const verts = cValues.GetFaceVertices(face);
         for (int i = 0; i < verts.size(); ++i) {
             bool const isNext =
                 values.isTruncation && i + 1 < verts.size() && verts[i + 1] < cValues.numVVertices;
-            if (verts[i] >= cValues.numVVertices && !isNext) {
-                vFaceOfCorner[values.GetChildVertexCorner(verts[i])] = face;
+            // That at the far end of a boundary has no corner.
+            Index const corner = values.GetChildVertexCorner(verts[i]);
+            if (0 <= corner && corner < pValues.numCorners && !isNext) {
+                vFaceOfCorner[corner] = face;
             }
         }
     }

@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <cstring>
 #include <map>
+#include <numeric>
 #include <unordered_map>
 #include <utility>
 
@@ -83,7 +84,7 @@ struct FaceTags {
     struct Hash {
         std::size_t operator()(FaceTags const &tags) const {
             constexpr std::uint64_t kFactor = 0x9e3779b97f4a7c15u; // of Fibonacci hashing
-            auto hash = std::uint64_t(tags.isHalf ? 0 : tags.size);
+            auto hash = std::uint64_t(tags.size) << 1 | std::uint64_t(tags.isHalf);
             auto const add = [&hash](float weight, Index rest) {
                 std::uint64_t const high = getBits(weight);
                 hash = (hash ^ (high << 32 | std::uint32_t(rest))) * kFactor;
@@ -282,9 +283,7 @@ public:
     DenseRuleMaker(RefinementRules &rules, FaceMask faceMask)
         : _rules(rules), _level(rules._level), _faceMask(faceMask),
           _isVertex(rules._interpolation == Interpolation::Vertex),
-          _masks(_level.numHexagonalSteps), _quadMask(ComputeQuadMask(_level.numHexagonalSteps)) {
-        ComputeHalfFaceVertexMask(faceMask, rules._interpolation, &_halfFaceWeights[0][0]);
-    }
+          _masks(_level.numHexagonalSteps), _quadMask(ComputeQuadMask(_level.numHexagonalSteps)) {}
 
     void Make() {
         std::vector<Index> const sharpFaces = findSharpFaces();
@@ -362,8 +361,9 @@ private:
         SectorCorner const *end() const { return behind; }
     };
     static void addOneFace(Sectors sectors, int corner, std::vector<double> &row);
-    void addOneFaceHalf(Sectors sectors, int const (&half)[kTrapezoid], int place,
-                        std::vector<double> &row) const;
+    void addOneFaceHalf(Sectors sectors, std::vector<int> const &half, int place,
+                        std::vector<double> &row);
+    std::vector<double> const &getHalfFaceWeights(int size);
 
     RefinementRules &_rules;
     Level const &_level;
@@ -371,7 +371,7 @@ private:
     bool _isVertex;
     IrregularMasks _masks;
     QuadMask _quadMask;
-    double _halfFaceWeights[kTrapezoid][kTrapezoid];
+    std::unordered_map<int, std::vector<double>> _halfFaceWeights; // by number of corners
     Index _endDense = 0; // behind the last face with a dense rule
     Index _endRead = 0;  // behind the last face whose tags were read
 };
@@ -454,7 +454,6 @@ Index RefinementRules::DenseRuleMaker::findFaceOfNext(Index corner) const {
 void RefinementRules::DenseRuleMaker::addRule(FaceTags const &tags) {
     int const size = tags.size;
     _rules._denseRules.push_back({size, _rules._rows.size()});
-    constexpr int kHalfFace[kTrapezoid] = {0, 1, 2, 3};
     double const sharp = tags.isHalf ? 1 : tags.diagonal;
     SectorCorner const *sector = tags.sectors;
     IrregularCorner const *irregular = tags.irregular;
@@ -493,13 +492,23 @@ void RefinementRules::DenseRuleMaker::addRule(FaceTags const &tags) {
             // Of a hexagon cut by its diagonal 0-3, each half follows the mask of a half face V, W, Q, P:
             // V and W are the ends of the diagonal, Q and P the two vertices between them.  At the ends
             // both halves have the same weights.
-            auto const &half = tags.isHalf ? kHalfFace : kHexagonHalves[i < kDiagonalEnd ? 1 : 0];
-            int const place = int(std::find(half, half + kTrapezoid, i) - half);
-            for (int j = 0; j < kTrapezoid; ++j) {
-                row[std::size_t(half[j])] += sharp * _halfFaceWeights[place][j];
+            std::vector<int> half;
+            if (tags.isHalf) {
+                half.resize(std::size_t(size));
+                std::iota(half.begin(), half.end(), 0);
+            } else {
+                auto const &ofHexagon = kHexagonHalves[i < kDiagonalEnd ? 1 : 0];
+                half.assign(std::begin(ofHexagon), std::end(ofHexagon));
+            }
+            std::size_t const place =
+                std::size_t(std::find(half.begin(), half.end(), i) - half.begin());
+            double const *const weights =
+                getHalfFaceWeights(int(half.size())).data() + place * half.size();
+            for (std::size_t j = 0; j < half.size(); ++j) {
+                row[std::size_t(half[j])] += sharp * weights[j];
             }
             if (hasOneFace) {
-                addOneFaceHalf({sectors, sector}, half, place, row);
+                addOneFaceHalf({sectors, sector}, half, int(place), row);
             }
         } else if (hasOneFace) {
             addOneFace({sectors, sector}, i, row);
@@ -510,6 +519,16 @@ void RefinementRules::DenseRuleMaker::addRule(FaceTags const &tags) {
         }
         addRow(row);
     }
+}
+
+// Row by row.
+std::vector<double> const &RefinementRules::DenseRuleMaker::getHalfFaceWeights(int size) {
+    auto const [found, isNew] = _halfFaceWeights.try_emplace(size);
+    if (isNew) {
+        found->second.resize(std::size_t(size) * std::size_t(size));
+        ComputeHalfFaceVertexMask(_faceMask, _rules._interpolation, size, found->second.data());
+    }
+    return found->second;
 }
 
 // The corner is number \p corner of a hexagon, whose weights these are so far.
@@ -529,8 +548,8 @@ void RefinementRules::DenseRuleMaker::addOneFace(Sectors sectors, int corner,
 
 // The corner is number \p place of half a face, whose mask has the share of its sharp side in the row.  Beside one end
 // of the line, that end's mask goes before the other's.
-void RefinementRules::DenseRuleMaker::addOneFaceHalf(Sectors sectors, int const (&half)[kTrapezoid],
-                                                     int place, std::vector<double> &row) const {
+void RefinementRules::DenseRuleMaker::addOneFaceHalf(Sectors sectors, std::vector<int> const &half,
+                                                     int place, std::vector<double> &row) {
     double beside = 0;
     double farFrom = 0;
     for (SectorCorner const &sector : sectors) {
@@ -540,9 +559,11 @@ void RefinementRules::DenseRuleMaker::addOneFaceHalf(Sectors sectors, int const 
     farFrom = std::max(0.0, farFrom - beside);
     // From the corner by the end beside it and the other end to the corner next to it.
     int const places[kTrapezoid] = {place, 3 - place, place - 2, 5 - place};
+    double const *const weights =
+        getHalfFaceWeights(kTrapezoid).data() + std::ptrdiff_t(place) * kTrapezoid;
     for (int j = 0; j < kTrapezoid; ++j) {
-        double const plain = _halfFaceWeights[place][places[j]];
-        row[std::size_t(half[places[j]])] += beside * (kOneFaceMask.atHalf[j] - plain) +
+        double const plain = weights[places[j]];
+        row[std::size_t(half[std::size_t(places[j])])] += beside * (kOneFaceMask.atHalf[j] - plain) +
                                              farFrom * (kOneFaceMask.farInHalf[j] - plain);
     }
 }

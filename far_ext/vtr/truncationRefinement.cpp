@@ -2,6 +2,7 @@
 #include "truncationRefinement.h"
 
 #include "faceWriter.h"
+#include "far_ext/rules/sharpMask.h"
 #include "truncationMask.h"
 
 #include <algorithm>
@@ -39,20 +40,44 @@ public:
         for (Index k = fan.begin; k < fan.end; ++k) {
             Index const corner = _mesh.GetVertexCorner(k);
             bool const isEndCut = numCuts < 2 ? !isWhole : isCut(_mesh.faceEdges[corner]);
-            _cuts[FindEdgeEnd(_mesh, corner)] = static_cast<unsigned char>(isEndCut);
+            setCut(corner, isEndCut);
         }
     }
     // From boundary to boundary.
-    void CutOpenFan(VertexFan const &fan) {
+    void CutOpenFan(Index vert, VertexFan const &fan) {
+        int numCuts = 1;
         for (Index k = fan.begin; k < fan.end; ++k) {
             Index const corner = _mesh.GetVertexCorner(k);
-            _cuts[FindEdgeEnd(_mesh, corner)] =
-                static_cast<unsigned char>(isCut(_mesh.faceEdges[corner]));
+            bool const isEndCut = isCut(_mesh.faceEdges[corner]);
+            setCut(corner, isEndCut);
+            numCuts += isEndCut ? 1 : 0;
         }
-        _cuts[FindEdgeEnd(_mesh, getInCorner(_mesh, fan.end - 1)) ^ 1u] = 1;
+        EndCut &last = _cuts[FindEdgeEnd(_mesh, getInCorner(_mesh, fan.end - 1)) ^ 1u];
+        last = EndCut::Cut;
+        if (numCuts == 2 && passes(vert, fan)) {
+            last = EndCut::Passed;
+            _cuts[FindEdgeEnd(_mesh, _mesh.GetVertexCorner(fan.begin))] = EndCut::Passed;
+        }
     }
 
 private:
+    void setCut(Index corner, bool isEndCut) {
+        _cuts[FindEdgeEnd(_mesh, corner)] = isEndCut ? EndCut::Cut : EndCut::Whole;
+    }
+    // Whether the border from the one end of a fan to the other passes the vertex, if nothing else cuts its polygon.
+    bool passes(Index vert, VertexFan const &fan) const {
+        SharpVertex const *const sharp = _mesh.FindSharpVertex(vert);
+        if (!sharp || sharp->rule != Crease::RULE_CREASE || _mesh.IsNonManifold(vert) ||
+            fan.GetSize() < 2 || fan.GetSize() > kMaxPassedFaces) {
+            return false;
+        }
+        return std::none_of(
+            _base.channels.begin(), _base.channels.end(), [&](FVarChannel const &channel) {
+                Level const &values = channel.values.levels[0];
+                Index const value = values.faceVerts[_mesh.GetVertexCorner(fan.begin)];
+                return Crease::IsSharp(values.GetVertexSharpness(value));
+            });
+    }
     bool isCut(Index edge) const {
         return _mesh.IsBoundary(edge) || Crease::IsSharp(_mesh.GetEdgeSharpness(edge)) ||
                partsFaces(edge);
@@ -84,14 +109,14 @@ private:
 
 EndCuts FindEndCuts(Hierarchy const &base, Far::ConstIndexArray labels) {
     Level const &mesh = base.mesh.levels[0];
-    EndCuts cuts(2 * std::size_t(mesh.numEdges), 0);
+    EndCuts cuts(2 * std::size_t(mesh.numEdges), EndCut::Whole);
     EndCutter cutter(base, labels, cuts);
     ParallelFor(mesh.numVertices, [&](Index vert) {
         ForEachFan(mesh, vert, [&](VertexFan const &fan) {
             if (fan.isClosed) {
                 cutter.CutClosedFan(vert, fan);
             } else {
-                cutter.CutOpenFan(fan);
+                cutter.CutOpenFan(vert, fan);
             }
         });
     });
@@ -100,7 +125,7 @@ EndCuts FindEndCuts(Hierarchy const &base, Far::ConstIndexArray labels) {
 
 EndCuts GetEndCutsOfChannel(Level const &mesh, EndCuts const &cuts, FVarLevel const &channel) {
     Level const &values = *channel.values;
-    EndCuts result(2 * std::size_t(values.numEdges), 0);
+    EndCuts result(2 * std::size_t(values.numEdges), EndCut::Whole);
     // Faces have the same corners in both; the two sides of an edge agree on its ends.
     ParallelFor(values.numEdges, [&](Index edge) {
         Index const corner = values.GetSideCorner(edge, 0);
@@ -119,7 +144,8 @@ TruncationRefiner::TruncationRefiner(Level const &parent, EndCuts cuts, TagOptio
             counts.vertices += isCut(pVert) ? 1 : 0;
             forEachVFace(pVert, [&](VFace const &vFace) {
                 ++counts.faces;
-                counts.corners += vFace.count + (vFace.hasVVertex ? 2 : 0);
+                counts.corners += vFace.count + (vFace.hasVVertex ? 2 : vFace.isHalf ? 1 : 0);
+                counts.edges += vFace.isHalf ? 1 : 0;
             });
         }
         return counts;
@@ -128,27 +154,30 @@ TruncationRefiner::TruncationRefiner(Level const &parent, EndCuts cuts, TagOptio
         ChildCounts counts;
         for (std::size_t edgeEnd = 2 * std::size_t(begin); edgeEnd < 2 * std::size_t(end);
              ++edgeEnd) {
-            counts.edges += _cuts[edgeEnd];
+            counts.edges += _cuts[edgeEnd] == EndCut::Cut ? 1 : 0;
         }
         return counts;
     });
     ChildCounts const &vertices = _vertexCounts.back();
     _sizes.vertices = vertices.vertices + _parent.numCorners + _parent.GetNumBoundaries();
-    _sizes.edges = std::int64_t(_parent.numCorners) + _parent.numEdges + _edgeCounts.back().edges;
+    _sizes.edges = std::int64_t(_parent.numCorners) + _parent.numEdges + _edgeCounts.back().edges +
+                   vertices.edges;
     _sizes.faces = _parent.numFaces + vertices.faces;
     _sizes.corners = 2 * std::int64_t(_parent.numCorners) + vertices.corners;
-    // The middle of a boundary, and a spoke at each end.
+    // The middle of a boundary, and a spoke at each end; but for two spokes where it passes a vertex.
     _sizes.freeBoundaries = 3 * std::int64_t(_parent.numFreeBoundaries);
-    _sizes.sharpBoundariesA = 3 * std::int64_t(_parent.numSharpBoundariesA);
+    _sizes.sharpBoundariesA =
+        3 * std::int64_t(_parent.numSharpBoundariesA) - 2 * vertices.edges;
+    _sizes.sharpBoundariesB = vertices.edges;
 }
 
-// One without edges stays.
+// Whether it stays, as one without edges does.
 bool TruncationRefiner::isCut(Index pVert) const {
     Index const begin = _parent.vertFirstEdge[pVert];
     Index const end = _parent.vertFirstEdge[pVert + 1];
     Far::LocalIndex const *const locals = _parent.GetVertexEdgeLocals(pVert);
     for (Index i = begin; i < end; ++i) {
-        if (_cuts[2 * std::size_t(_parent.vertEdges[i]) + locals[i - begin]]) {
+        if (_cuts[2 * std::size_t(_parent.vertEdges[i]) + locals[i - begin]] == EndCut::Cut) {
             return true;
         }
     }
@@ -160,7 +189,7 @@ template <typename FUNCTION>
 void TruncationRefiner::forEachVFace(Index pVert, FUNCTION function) const {
     ForEachFan(_parent, pVert, [&](VertexFan const &fan) {
         auto const beginsWedge = [&](Index k) {
-            return _cuts[FindEdgeEnd(_parent, _parent.GetVertexCorner(k))] != 0;
+            return _cuts[FindEdgeEnd(_parent, _parent.GetVertexCorner(k))] != EndCut::Whole;
         };
         Index start = fan.begin;
         while (start < fan.end && !beginsWedge(start)) {
@@ -169,6 +198,10 @@ void TruncationRefiner::forEachVFace(Index pVert, FUNCTION function) const {
         Index const size = fan.GetSize();
         if (start == fan.end) {
             function(VFace{fan, fan.begin, size, false});
+            return;
+        }
+        if (_cuts[FindEdgeEnd(_parent, _parent.GetVertexCorner(start))] == EndCut::Passed) {
+            function(VFace{fan, start, size, false, true});
             return;
         }
         Index begin = 0; // of the wedge, seen from the start
@@ -190,7 +223,7 @@ void TruncationRefiner::relate(Refinement &refinement) const {
 }
 
 // Fills the faces of a child and, for FULL, the sides of its edges: in this order those across the
-// corners of the F-faces, those along the parent's edges, and the spokes.
+// corners of the F-faces, those along the parent's edges, the spokes, and the long edges of half faces.
 template <bool FULL>
 class TruncationRefiner::Builder : public FaceWriter<FULL> {
 public:
@@ -239,7 +272,8 @@ private:
             ChildCounts const &before = _refiner._edgeCounts[std::size_t(begin / kParallelRange)];
             Index cEdge = _p.numCorners + _p.numEdges + Index(before.edges);
             for (std::size_t i = 2 * std::size_t(begin); i < 2 * std::size_t(end); ++i) {
-                _spokes[i] = _refiner._cuts[i] ? cEdge++ : Far::INDEX_INVALID;
+                _spokes[i] =
+                    _refiner._cuts[i] == EndCut::Cut ? cEdge++ : Far::INDEX_INVALID;
             }
         });
     }
@@ -265,11 +299,30 @@ private:
             ChildCounts const &before = _refiner._vertexCounts[std::size_t(begin / kParallelRange)];
             NextFace place = {_p.numFaces + Index(before.faces),
                               2 * _p.numCorners + Index(before.corners)};
+            Index longEdge = _p.numCorners + _p.numEdges +
+                             Index(_refiner._edgeCounts.back().edges + before.edges);
             for (Index pVert = begin; pVert < end; ++pVert) {
-                _refiner.forEachVFace(pVert,
-                                      [&](VFace const &vFace) { fillVFace(pVert, vFace, place); });
+                _refiner.forEachVFace(pVert, [&](VFace const &vFace) {
+                    if (vFace.isHalf) {
+                        fillHalfFace(vFace, longEdge++, place);
+                    } else {
+                        fillVFace(pVert, vFace, place);
+                    }
+                });
             }
         });
+    }
+    void fillHalfFace(VFace const &vFace, Index longEdge, NextFace &place) {
+        beginFace(place);
+        Index const last = getInCorner(_p, vFace.GetPosition(vFace.count - 1));
+        addCorner(place, farVertex(last), {longEdge, kFirst});
+        if constexpr (FULL) {
+            _edges[std::size_t(longEdge)].corners[kSecond] = kSharpBoundaryB;
+        }
+        for (Index i = 0; i < vFace.count; ++i) {
+            Index const corner = _p.GetVertexCorner(vFace.GetPosition(i));
+            addCorner(place, fVertex(corner), cornerEdge(corner, kSecond));
+        }
     }
     void fillVFace(Index pVert, VFace const &vFace, NextFace &place) {
         auto const cornerAt = [&](Index i) { return _p.GetVertexCorner(vFace.GetPosition(i)); };
@@ -291,6 +344,9 @@ private:
         for (Index pEdge : _p.boundaryEdges) {
             std::size_t const end = 2 * std::size_t(pEdge);
             for (Index cEdge : {_p.numCorners + pEdge, _spokes[end], _spokes[end + 1]}) {
+                if (cEdge == Far::INDEX_INVALID) { // it passes the vertex
+                    continue;
+                }
                 auto &corners = _edges[std::size_t(cEdge)].corners;
                 if (corners[kFirst] == kNoCorner) {
                     std::swap(corners[kFirst], corners[kSecond]);

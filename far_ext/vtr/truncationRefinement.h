@@ -9,9 +9,15 @@
 
 namespace OpenSubdivHex::FarExt::internal {
 
-/// \brief By end of an edge, 2 e for the end at the first vertex of edge e and 2 e + 1 for the other:
-/// whether the truncation of a mesh cuts the polygon of the vertex there.
-using EndCuts = std::vector<unsigned char>;
+/// \brief What the truncation of a mesh does to the polygon of a vertex where an edge ends.
+enum class EndCut : unsigned char {
+    Whole, ///< nothing
+    Cut,   ///< cuts it along a spoke to the vertex, which stays
+    Passed ///< lets a line through it, straight from there to the other such edge of the vertex, which does not stay
+};
+
+/// By end of an edge, 2 e for the end at the first vertex of edge e and 2 e + 1 for the other.
+using EndCuts = std::vector<EndCut>;
 
 /// \brief Where the truncation of level 0 of \p base cuts polygons.
 ///
@@ -19,6 +25,9 @@ using EndCuts = std::vector<unsigned char>;
 /// of which one is a hole or has another of the \p labels that base faces may have.  A vertex where
 /// one such edge ends, but for a dart, or none though it is sharp itself, is cut at all its edges; so
 /// is one with two faces, whose polygon would have two vertices.
+///
+/// A line passes a vertex whose rule is that of a crease between two boundaries, which are cut alone, with two to
+/// kMaxPassedFaces faces; unless it is non-manifold, or a value of a channel is sharp there.
 EndCuts FindEndCuts(Hierarchy const &base, Far::ConstIndexArray labels);
 
 /// Cuts for the value mesh of a channel of \p mesh, both of level 0.
@@ -28,9 +37,9 @@ EndCuts GetEndCutsOfChannel(Level const &mesh, EndCuts const &cuts, FVarLevel co
 ///
 /// A face of n sides becomes an F-face of 2n vertices, two on each edge; a vertex a V-face of those
 /// beside it.  Where it is cut, the vertex makes a V-vertex and a V-face for each wedge between two
-/// cuts.  The vertices on edges count as F-vertices: each has the corner where a face begins to run
+/// cuts.  Where a border passes it, its V-face is a half face, whose long edge is on the border.  The vertices on edges count as F-vertices: each has the corner where a face begins to run
 /// along the edge from there.  The one at the far end of a boundary has no such corner and follows
-/// them all.  The last vertex of a V-face is the F-vertex of the corner of its first face.
+/// them all.  The last vertex of a V-face is the F-vertex of a corner at its vertex.
 /// INDEXING.md has the numbering.
 class TruncationRefiner {
 public:
@@ -57,7 +66,7 @@ private:
     TagOptions const _tagOptions;
     LevelSizes _sizes{};
     // By range, the counts that the components before the range make.
-    std::vector<ChildCounts> _vertexCounts; ///< V-vertices and V-faces
+    std::vector<ChildCounts> _vertexCounts; ///< V-vertices, V-faces, and edges that pass vertices
     std::vector<ChildCounts> _edgeCounts;   ///< spokes
 };
 

@@ -28,6 +28,7 @@ struct VFace {
     Far::Index begin; ///< position in Level::vertFaces
     Far::Index count;
     bool hasVVertex; ///< in the polygon too
+    bool isHalf = false; ///< a half face, along whose long edge a border passes the vertex
 
     /// The position of its face \p i.
     Far::Index GetPosition(Far::Index i) const { return fan.Advance(begin, i); }

@@ -315,7 +315,7 @@ TEST(Mask, HalfFaceByHand) {
     // W, Q, P.  For Q: 11 Q + 4 (W + P) + 2 (V + P*) + Q*
     //   = V (2 + 1 + 3/2) + W (4 + 3 + 1/2) + Q (11 - 2) + P (4 - 1).
     double weights[4][4];
-    FarExt::ComputeHalfFaceVertexMask(FaceMask::Cosine, Interpolation::Vertex, &weights[0][0]);
+    FarExt::ComputeHalfFaceVertexMask(FaceMask::Cosine, Interpolation::Vertex, 4, &weights[0][0]);
     double const expected[4][4] = {
         {18, 6, 0, 0}, {6, 18, 0, 0}, {4.5, 7.5, 9, 3}, {7.5, 4.5, 3, 9}};
     for (int i = 0; i < 4; ++i) {
@@ -326,28 +326,65 @@ TEST(Mask, HalfFaceByHand) {
 }
 
 TEST(Mask, HalfFacesReproduceLinearFunctions) {
-    // A half of the regular hexagon: V = (-1, 0), W = (1, 0), Q and P above.
-    double const x[4] = {-1, 1, 0.5, -0.5};
-    double const y[4] = {0, 0, std::sqrt(0.75), std::sqrt(0.75)};
-    for (FaceMask mask : {FaceMask::Average, FaceMask::Cosine, FaceMask::Smooth}) {
-        for (Interpolation interpolation : {Interpolation::Vertex, Interpolation::Varying}) {
-            double weights[4][4];
-            FarExt::ComputeHalfFaceVertexMask(mask, interpolation, &weights[0][0]);
-            std::vector<double> const hexagon = faceMask(mask, 6, interpolation);
-            // The hexagon's mask scales about its centre.
-            double const scale = hexagon[0] + hexagon[1] - hexagon[2] - hexagon[3];
-            for (int i = 0; i < 4; ++i) {
-                double sum = 0, sumX = 0, sumY = 0;
-                for (int j = 0; j < 4; ++j) {
-                    EXPECT_GE(weights[i][j], 0);
-                    sum += weights[i][j];
-                    sumX += weights[i][j] * x[j];
-                    sumY += weights[i][j] * y[j];
+    for (int n = 3; n <= 65; ++n) {
+        SCOPED_TRACE(n);
+        // Half of a regular polygon around the origin: V = (1, 0), W = (-1, 0), the others below.
+        std::vector<double> x, y;
+        for (int i = 0; i < n; ++i) {
+            double const angle = i == 0 ? 0 : kPi * (1 + double(i - 1) / (n - 1));
+            x.push_back(std::cos(angle));
+            y.push_back(std::sin(angle));
+        }
+        for (FaceMask mask : {FaceMask::Average, FaceMask::Cosine, FaceMask::Smooth}) {
+            for (Interpolation interpolation : {Interpolation::Vertex, Interpolation::Varying}) {
+                auto const size = std::size_t(n);
+                std::vector<double> weights(size * size);
+                FarExt::ComputeHalfFaceVertexMask(mask, interpolation, n, weights.data());
+                std::vector<double> const whole = faceMask(mask, 2 * (n - 1), interpolation);
+                double scale = 0; // of the polygon's mask about its centre, which Smooth has at 1/2
+                for (std::size_t j = 0; j < whole.size(); ++j) {
+                    scale += whole[j] * std::cos(2 * kPi * double(j) / double(whole.size()));
                 }
-                EXPECT_NEAR(sum, 1, 1e-15);
-                EXPECT_NEAR(sumX, (i < 2 ? 0.5 : scale) * x[i], 1e-15);
-                EXPECT_NEAR(sumY, scale * y[i], 1e-15);
+                for (std::size_t i = 0; i < size; ++i) {
+                    double sum = 0, sumX = 0, sumY = 0;
+                    for (std::size_t j = 0; j < size; ++j) {
+                        double const weight = weights[i * size + j];
+                        EXPECT_GE(weight, 0);
+                        sum += weight;
+                        sumX += weight * x[j];
+                        sumY += weight * y[j];
+                    }
+                    EXPECT_NEAR(sum, 1, 1e-14);
+                    EXPECT_NEAR(sumX, (i < 2 ? 0.5 : scale) * x[i], 1e-14);
+                    EXPECT_NEAR(sumY, scale * y[i], 1e-14);
+                }
             }
+        }
+    }
+}
+
+// Smooth's: along the side 1, 1/2, and across it 1/2, 1/4, then 1/8 or 1/6 for all that is left.
+TEST(Mask, HalfFacesBoundCurvature) {
+    for (int n : {3, 4, 5, 6, 9, 17, 33, 65}) {
+        SCOPED_TRACE(n);
+        Eigen::MatrixXd matrix(n, n);
+        std::vector<double> weights(std::size_t(n) * std::size_t(n));
+        FarExt::ComputeHalfFaceVertexMask(FaceMask::Smooth, Interpolation::Vertex, n,
+                                          weights.data());
+        for (int i = 0; i < n; ++i) {
+            for (int j = 0; j < n; ++j) {
+                matrix(i, j) = weights[std::size_t(i * n + j)];
+            }
+        }
+        std::vector<double> moduli;
+        for (std::complex<double> value : matrix.eigenvalues()) {
+            moduli.push_back(std::abs(value));
+        }
+        std::sort(moduli.rbegin(), moduli.rend());
+        std::vector<double> expected{1, 0.5, 0.5, 0.25};
+        expected.resize(std::size_t(n), n < 7 ? 1 / 8.0 : 1 / 6.0);
+        for (std::size_t i = 0; i < std::size_t(n); ++i) {
+            EXPECT_NEAR(moduli[i], expected[i], 1e-7) << i;
         }
     }
 }

@@ -134,11 +134,11 @@ void TaggedMatch::makeBase(Shape const &shape) {
     _levels.push_back(MakeTaggedMesh(base));
     TaggedMesh const mesh = _levels[0];
     std::vector<TaggedMesh> values;
-    for (FVarChannel const &channel : shape.fvarChannels) {
+    for (std::size_t channel = 0; channel < shape.fvarChannels.size(); ++channel) {
         std::vector<int> valuesOfVertices;
-        values.push_back(MakeValueMesh(mesh, rightHanded(shape, channel.valueIndices),
-                                       std::vector<float>(base.faceVertices.size()),
-                                       valuesOfVertices));
+        values.push_back(
+            MakeValueMesh(mesh, rightHanded(shape, shape.fvarChannels[channel].valueIndices),
+                          valueSharpness(*farBase, int(channel), mesh), valuesOfVertices));
     }
     _cuts = FindCuts(mesh, values);
     if (_channel >= 0) {

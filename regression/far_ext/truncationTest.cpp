@@ -102,9 +102,11 @@ public:
         }
     }
 
-    /// V-faces follow the vertices, and spokes the edges, each with its first end first.
+    /// V-faces follow the vertices, and spokes the edges, each with its first end first; then the long edges of half
+    /// faces.
     void ExpectVFaces() const {
         int lastVertex = 0;
+        std::vector<int> longEdges;
         for (int f = _parent.GetNumFaces(); f < _child.GetNumFaces(); ++f) {
             ASSERT_EQ(_child.GetFaceKind(f), FarExt::FaceKind::Vertex);
             int const vertex = _child.GetFaceParentVertex(f);
@@ -120,6 +122,11 @@ public:
             ASSERT_EQ(_child.GetFaceBaseFace(f), face);
             ASSERT_EQ(_child.GetFaceEdges(f)[vertices.size() - 1], corner);
             int const cVert = _parent.GetVertexChildVertex(vertex);
+            if (_child.IsFaceHalf(f)) {
+                ASSERT_LT(cVert, 0);
+                longEdges.push_back(_child.GetFaceEdges(f)[0]);
+                ASSERT_TRUE(_child.IsEdgeBoundary(longEdges.back()));
+            }
             if (cVert >= 0 && vertices[vertices.size() - 2] != cVert) {
                 ADD_FAILURE() << "face " << f << " has its V-vertex elsewhere";
             }
@@ -141,6 +148,9 @@ public:
                                                                    : cVert);
                 }
             }
+        }
+        for (int edge : longEdges) {
+            ASSERT_EQ(edge, spoke++);
         }
         ASSERT_EQ(spoke, _child.GetNumEdges());
     }

@@ -382,21 +382,33 @@ private:
         return (face[place] + face[(place + 1) % face.size()] + centroid) / 3;
     }
 
+    /// The other half is completed by ghosts, which have half a turn, as the face has, from its vertex 0 to 1.
     Point halfPoint(Face const &face, int place) const {
         std::vector<Point> const points = pointsOf(face.vertices);
+        int const count = int(points.size()) - 1; // of the edges in half a turn
         Point const &v = points[0];
         Point const &w = points[1];
-        Point const &q = points[2];
-        Point const &p = points[3];
-        if (place == 0) {
-            return (3 * v + w) / 4;
+        if (place < 2) {
+            return (3 * points[std::size_t(place)] + points[std::size_t(1 - place)]) / 4;
         }
-        if (place == 1) {
-            return (v + 3 * w) / 4;
+        std::vector<Point> polygon{v};
+        for (int i = 1; i < count; ++i) {
+            double const c = std::cos(std::acos(-1.0) * i / count);
+            polygon.push_back((1 + c) * v + (1 - c) * w - points[std::size_t(count + 1 - i)]);
         }
-        Point const qGhost = (3 * v + w) / 2 - p;
-        Point const pGhost = (v + 3 * w) / 2 - q;
-        return maskPoint({v, qGhost, pGhost, w, q, p}, place == 2 ? 4 : 5);
+        polygon.insert(polygon.end(), points.begin() + 1, points.end());
+        Point const whole = maskPoint(polygon, count + place - 1);
+        if (_isVarying || _mask != ReferenceMask::Smooth || count < 6) {
+            return whole;
+        }
+        // Waves of three turns and more around the polygon are kept by 1/6 in place of 1/8.
+        Point slow = Point::Zero(whole.size()); // the waves of less
+        for (int j = 0; j < 2 * count; ++j) {
+            double const t = std::acos(-1.0) * (j - (count + place - 1)) / count;
+            slow += (1 + 2 * std::cos(t) + 2 * std::cos(2 * t)) / (2 * count) *
+                    polygon[std::size_t(j)];
+        }
+        return whole + (1 / 6.0 - 1 / 8.0) * (polygon[std::size_t(count + place - 1)] - slow);
     }
 
     /// In 256ths, going around from the new point's corner towards or away from the vertex with one face.

@@ -17,14 +17,15 @@ enum class ReferenceScheme { Hexagonal, DooSabin, TriHex, Truncate };
 /// \brief A mesh with boundaries, creases, corners, holes and flaws, whose
 /// rules are taken at their word: a sharp line goes along edges.
 ///
-/// So a hexagon that a crease crosses is two half faces, glued along a *long* edge, until the
-/// crease is smooth; a half face at a sharp boundary has a long edge without another side.  Edges
+/// So a polygon that a crease crosses is two half faces, glued along a *long* edge, until the
+/// crease is smooth; a half face at a sharp boundary has a long edge without another side.  A half face
+/// of k + 1 vertices is half of a polygon of 2k.  Edges
 /// name their sides, so that several may join the same two vertices.
 struct TaggedMesh {
     struct Face {
         std::vector<int> vertices;
         std::vector<int> edges;  ///< edge i from vertex i to vertex i + 1
-        bool isHalf = false;     ///< half a hexagon, edge 0 the long one
+        bool isHalf = false;     ///< half a polygon, mostly a hexagon; edge 0 the long one
         std::vector<bool> holes; ///< by edge: whether the face is a hole there
         /// By place: what the face's edges from there and to there came from; see QuadPath.
         std::vector<QuadPath> pathsOut;
@@ -120,9 +121,14 @@ TaggedMesh MakeValueMesh(TaggedMesh const &mesh, std::vector<int> const &valueIn
                          std::vector<float> const &valueSharpness,
                          std::vector<int> &valuesOfVertices);
 
-/// By face and place: whether the edge that begins there cuts the polygon which a truncation makes of
-/// the vertex there.
-using ReferenceCuts = std::vector<std::vector<bool>>;
+/// \brief What a truncation makes of the polygons of vertices.
+struct ReferenceCuts {
+    /// By face and place: whether the edge that begins there cuts the polygon of the vertex there.
+    std::vector<std::vector<bool>> cuts;
+    /// By face and place: whether a sharp line goes through the vertex there, which is not kept: the line
+    /// runs through its polygon from one edge to the other.
+    std::vector<std::vector<bool>> isPassed;
+};
 
 /// \brief Where the truncation of a base mesh cuts polygons, so that faces stay apart which \p values,
 /// the value meshes of its channels, or holes part, and that creases go on.

@@ -383,8 +383,7 @@ void Refinement::joinSides() {
 
 void Refinement::mergeSmoothHalves() {
     std::vector<int> replacedBy(_child.faces.size(), -1);
-    std::vector<int> placesInHexagon[2] = {{0, 3, 4, 5}, {3, 0, 1, 2}};
-    std::vector<int> halfOf(_child.faces.size(), 0);
+    std::vector<std::vector<int>> placesInWhole(_child.faces.size());
     std::vector<Edge> edges;
     for (Edge const &edge : _child.edges) {
         if (!edge.isLong || edge.sides.size() == 1 || edge.sharpness > 0) {
@@ -393,25 +392,41 @@ void Refinement::mergeSmoothHalves() {
         }
         int const first = edge.sides[0].face;
         int const second = edge.sides[1].face;
-        std::vector<int> const a = _child.faces[first].vertices;
-        std::vector<int> const b = _child.faces[second].vertices;
-        _child.faces[first].vertices = {a[0], b[2], b[3], a[1], a[2], a[3]};
-        _child.faces[first].isHalf = false;
-        for (bool isOut : {true, false}) {
-            auto const paths = isOut ? &Face::pathsOut : &Face::pathsIn;
-            std::vector<QuadPath> const p = _child.faces[first].*paths;
-            std::vector<QuadPath> const q = _child.faces[second].*paths;
-            _child.faces[first].*
-                paths = {isOut ? q[1] : p[0], q[2], q[3], isOut ? p[1] : q[0], p[2], p[3]};
+        // Vertex 0 of the first half, then what the second one has beside the line, and so on.
+        auto const merge = [&](auto const &a, auto const &b, auto const &atStart, auto const &atEnd) {
+            auto result = a;
+            result.assign(1, atStart);
+            result.insert(result.end(), b.begin() + 2, b.end());
+            result.push_back(atEnd);
+            result.insert(result.end(), a.begin() + 2, a.end());
+            return result;
+        };
+        Face &whole = _child.faces[first];
+        Face const &other = _child.faces[second];
+        int const end = int(other.vertices.size()) - 1; // of the line
+        int const size = end + int(whole.vertices.size()) - 1;
+        placesInWhole[first].push_back(0);
+        for (int i = end; i < size; ++i) {
+            placesInWhole[first].push_back(i);
         }
-        bool const isHoleA = _child.faces[first].holes[0];
-        bool const isHoleB = _child.faces[second].holes[0];
-        _child.faces[first].holes = {isHoleB, isHoleB, isHoleB, isHoleA, isHoleA, isHoleA};
+        placesInWhole[second].push_back(end);
+        for (int i = 0; i < end; ++i) {
+            placesInWhole[second].push_back(i);
+        }
+        whole.vertices =
+            merge(whole.vertices, other.vertices, whole.vertices[0], whole.vertices[1]);
+        whole.isHalf = false;
+        whole.pathsOut =
+            merge(whole.pathsOut, other.pathsOut, other.pathsOut[1], whole.pathsOut[1]);
+        whole.pathsIn = merge(whole.pathsIn, other.pathsIn, whole.pathsIn[0], other.pathsIn[0]);
+        bool const isHoleA = whole.holes[0];
+        bool const isHoleB = other.holes[0];
+        whole.holes.assign(std::size_t(size), isHoleA);
+        std::fill_n(whole.holes.begin(), end, isHoleB);
         _child.faceOrigins[first].mergedWith = int(_child.mergedOrigins.size());
         _child.mergedOrigins.push_back(_child.faceOrigins[second]);
         replacedBy[second] = first;
         replacedBy[first] = first;
-        halfOf[second] = 1;
     }
     // Numbers without those that are gone.
     std::vector<int> numbers(_child.faces.size(), -1);
@@ -427,7 +442,7 @@ void Refinement::mergeSmoothHalves() {
     for (Edge &edge : edges) {
         for (Side &side : edge.sides) {
             if (replacedBy[side.face] >= 0) {
-                side.place = placesInHexagon[halfOf[side.face]][side.place];
+                side.place = placesInWhole[side.face][side.place];
                 side.face = replacedBy[side.face];
             }
             side.face = numbers[side.face];

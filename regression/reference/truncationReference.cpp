@@ -19,24 +19,26 @@ Edge const &edgeOf(TaggedMesh const &mesh, Side side) {
 } // namespace
 
 ReferenceCuts FindCuts(TaggedMesh const &mesh, std::vector<TaggedMesh> const &values) {
-    ReferenceCuts cuts;
+    ReferenceCuts result;
     for (Face const &face : mesh.faces) {
-        cuts.emplace_back(face.vertices.size(), false);
+        result.cuts.emplace_back(face.vertices.size(), false);
+        result.isPassed.emplace_back(face.vertices.size(), false);
     }
     auto const parts = [&](Side side) {
         std::vector<Side> const &sides = edgeOf(mesh, side).sides;
         if (sides.size() == 1) {
             return true;
         }
-        bool result = mesh.faces[sides[0].face].holes[0] != mesh.faces[sides[1].face].holes[0];
+        bool isParting = mesh.faces[sides[0].face].holes[0] != mesh.faces[sides[1].face].holes[0];
         for (TaggedMesh const &valueMesh : values) {
-            result = result || edgeOf(valueMesh, side).sides.size() == 1;
+            isParting = isParting || edgeOf(valueMesh, side).sides.size() == 1;
         }
-        return result;
+        return isParting;
     };
     for (int v = 0; v < int(mesh.vertices.size()); ++v) {
         bool const isSharp = mesh.vertices[v].sharpness > 0 || mesh.vertices[v].isNonManifold;
-        for (Fan const &fan : findFans(mesh, v)) {
+        std::vector<Fan> const fans = findFans(mesh, v);
+        for (Fan const &fan : fans) {
             std::vector<Side> parting;
             std::vector<Side> all; // with creases
             for (Side corner : fan.corners) {
@@ -54,11 +56,24 @@ ReferenceCuts FindCuts(TaggedMesh const &mesh, std::vector<TaggedMesh> const &va
                 all.clear(); // a dart at most
             }
             for (Side corner : all) {
-                cuts[corner.face][corner.place] = true;
+                result.cuts[corner.face][corner.place] = true;
             }
         }
+        // A border goes through a vertex with two faces and more where nothing else is.
+        bool isPassed = fans.size() == 1 && !fans[0].isClosed && fans[0].corners.size() > 1 &&
+                        !isSharp && GetRule(mesh, v) == TaggedRule::Crease;
+        for (std::size_t i = 0; isPassed && i < fans[0].corners.size(); ++i) {
+            Side const corner = fans[0].corners[i];
+            isPassed = result.cuts[corner.face][corner.place] == (i == 0);
+            for (TaggedMesh const &valueMesh : values) {
+                isPassed = isPassed && valueMesh.vertices[valueMesh.GetStart(corner)].sharpness == 0;
+            }
+        }
+        for (Side corner : mesh.vertices[v].corners) {
+            result.isPassed[corner.face][corner.place] = isPassed;
+        }
     }
-    return cuts;
+    return result;
 }
 
 namespace {
@@ -90,14 +105,23 @@ public:
     }
 
 private:
-    /// What an edge is: beside a corner, along an edge, or from a vertex to a new one on an edge.
-    enum Kind { BesideCorner, AlongEdge, Spoke };
+    /// What an edge is: beside a corner, along an edge, from a vertex to a new one on an edge, or through the
+    /// polygon of a vertex.
+    enum Kind { BesideCorner, AlongEdge, Spoke, Through };
     using Key = std::array<int, 3>;
 
-    bool isCutBefore(Side corner) const { return _cuts[corner.face][corner.place]; }
+    bool isCutBefore(Side corner) const { return _cuts.cuts[corner.face][corner.place]; }
+
+    bool isPassed(int v) const {
+        std::vector<Side> const &corners = _parent.vertices[v].corners;
+        return !corners.empty() && _cuts.isPassed[corners[0].face][corners[0].place];
+    }
 
     bool isKept(int v) const {
         std::vector<Side> const &corners = _parent.vertices[v].corners;
+        if (isPassed(v)) {
+            return false;
+        }
         return corners.empty() || std::any_of(corners.begin(), corners.end(), [&](Side corner) {
                    return isCutBefore(corner) ||
                           edgeOf(_parent, previousSide(_parent, corner)).sides.size() == 1;
@@ -140,9 +164,10 @@ private:
         return nearVertex(sides[isFirst ? 1 : 0]);
     }
 
-    void addFace(std::vector<int> vertices, std::vector<Key> const &keys, bool isHole,
+    void addFace(std::vector<int> vertices, std::vector<Key> const &keys, bool isHalf, bool isHole,
                  TaggedMesh::FaceOrigin const &origin) {
         Face face;
+        face.isHalf = isHalf;
         face.vertices = std::move(vertices);
         face.holes.assign(face.vertices.size(), isHole);
         for (int i = 0; i < int(keys.size()); ++i) {
@@ -160,6 +185,11 @@ private:
     Edge makeEdge(Key const &key) const {
         Edge result;
         if (key[0] == BesideCorner) {
+            return result;
+        }
+        if (key[0] == Through) {
+            result.isLong = true;
+            result.sharpness = kInfiniteSharpness;
             return result;
         }
         Edge const &edge = _parent.edges[key[1]];
@@ -191,7 +221,7 @@ private:
         }
         TaggedMesh::FaceOrigin origin;
         origin.face = f;
-        addFace(vertices, keys, _parent.faces[f].holes[0], origin);
+        addFace(vertices, keys, false, _parent.faces[f].holes[0], origin);
     }
 
     void makeVFaces(int v, Fan const &fan) {
@@ -217,12 +247,17 @@ private:
     void makeVFace(int v, std::vector<Side> const &corners, bool isSector) {
         std::vector<int> vertices;
         std::vector<Key> keys;
+        bool const isHalf = isSector && isPassed(v);
+        Side const last = previousSide(_parent, corners.back());
+        if (isHalf) {
+            vertices.push_back(farVertex(last));
+            keys.push_back({Through, v, 0});
+        }
         for (Side corner : corners) {
             vertices.push_back(nearVertex(corner));
             keys.push_back({BesideCorner, corner.face, corner.place});
         }
-        if (isSector) {
-            Side const last = previousSide(_parent, corners.back());
+        if (isSector && !isHalf) {
             vertices.push_back(farVertex(last));
             keys.push_back({Spoke, _parent.faces[last.face].edges[last.place], farVertex(last)});
             vertices.push_back(_child.vVertices[v]);
@@ -235,7 +270,7 @@ private:
         bool const isHole = std::all_of(corners.begin(), corners.end(), [this](Side corner) {
             return _parent.faces[corner.face].holes[0];
         });
-        addFace(vertices, keys, isHole, origin);
+        addFace(vertices, keys, isHalf, isHole, origin);
     }
 
     TaggedMesh const &_parent;
