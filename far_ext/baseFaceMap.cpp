@@ -35,8 +35,9 @@ void BaseFaceMap::addLevel(internal::Refinement const &refinement) {
                 continue;
             }
             auto const getBaseFace = [&](int side) {
-                return GetBaseFace(parent.edgeFaces[edge][side],
-                                   GetHalfOfEdge(parent.edgeFaceLocals[edge][side]));
+                Index const face = parent.edgeFaces[edge][side];
+                return GetBaseFace(
+                    face, parent.GetHalfOfFaceEdge(face, parent.edgeFaceLocals[edge][side]));
             };
             _baseFaces[cFace] = getBaseFace(0);
             if (HasHalves(child.GetFaceSize(cFace))) {
@@ -53,8 +54,15 @@ void BaseFaceMap::addLevel(internal::Refinement const &refinement) {
         }
     }
     for (Index cFace = child.numFaces - child.numVFaces; cFace < child.numFaces; ++cFace) {
-        internal::Cell const cell = refinement.GetParentCell({cFace, 0});
-        _baseFaces[cFace] = GetBaseFace(cell.face, cell.half);
+        auto const getBaseFace = [&](int half) {
+            internal::Cell const cell = refinement.GetParentCell({cFace, half});
+            return GetBaseFace(cell.face, cell.half);
+        };
+        _baseFaces[cFace] = getBaseFace(0);
+        if (Index const second = getBaseFace(1); second != _baseFaces[cFace]) {
+            _splitFaces.push_back({cFace, {_baseFaces[cFace], second}});
+            _baseFaces[cFace] = ~Index(_splitFaces.size() - 1);
+        }
     }
 }
 

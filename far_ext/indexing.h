@@ -58,6 +58,18 @@ inline constexpr int kHalfFaceLongEdge = 0;
 /// The corners of the two halves of a hexagon that an edge of the base mesh crosses, be it a crease,
 /// a face-varying seam or neither: half 0 is on the side of the first face of the parent edge.
 inline constexpr int kHexagonHalves[2][4] = {{0, 3, 4, 5}, {3, 0, 1, 2}};
+/// \brief The place of vertex \p i of a half in a face that is cut along a diagonal from its vertex 0 to \p end, as
+/// kHexagonHalves has them for hexagons.
+///
+/// Half 1 has the end + 1 vertices from 0 to \p end, half 0 the others and these two; each begins with an end of the
+/// diagonal and goes on with the other.
+constexpr int GetPlaceInHalves(int half, int i, int end) {
+    return half == 1 ? (i == 0 ? end : i - 1) : (i == 0 ? 0 : end + i - 1);
+}
+/// The vertices of a half, of a face of \p numVertices.
+constexpr int GetHalfSize(int half, int numVertices, int end) {
+    return half == 1 ? end + 1 : numVertices - end + 1;
+}
 /// The half that edge \p local of a hexagon belongs to, whose edge local % 3 + 1 it is.
 constexpr int GetHalfOfEdge(int local) { return local < kDiagonalEnd ? 1 : 0; }
 /// A face of \p numCorners corners that an edge made has two halves if it is a hexagon.

@@ -154,6 +154,8 @@ float TopologyLevel::GetFaceDiagonalSharpness(Index f) const {
     return _level->GetDiagonalSharpness(f);
 }
 
+int TopologyLevel::GetFaceDiagonalEnd(Index f) const { return _level->GetDiagonalEnd(f); }
+
 bool TopologyLevel::IsFaceHalf(Index f) const { return _level->IsHalfFace(f); }
 
 bool TopologyLevel::IsVertexValenceRegular(Index v) const {
@@ -180,7 +182,7 @@ Far::ConstIndexArray TopologyLevel::GetFaceFVarValues(Index f, int channel) cons
     }
     FVarLevel const &values = fvarLevel(channel);
     if (FVarLevel::SplitFace const *split = values.FindSplitFace(f)) {
-        return ConstIndexArray(split->cornerValues, HexIndexing::kNumEFaceCorners);
+        return ConstIndexArray(split->cornerValues.data(), int(split->cornerValues.size()));
     }
     return values.values->GetFaceVertices(values.valueFaces[f]);
 }
@@ -210,7 +212,8 @@ bool TopologyLevel::DoesVertexFVarTopologyMatch(Index v, int channel) const {
     ConstLocalIndexArray const locals = GetVertexFaceLocalIndices(v);
     ConstIndexArray const edges = GetVertexEdges(v);
     auto isSplitHere = [&](int i) {
-        bool const onDiagonal = locals[i] == kDiagonalStart || locals[i] == kDiagonalEnd;
+        bool const onDiagonal = locals[i] == kDiagonalStart ||
+                                locals[i] == _level->GetDiagonalEnd(faces[i]);
         return onDiagonal && IsFaceFVarSplit(faces[i], channel);
     };
     for (int i = 0; i < faces.size(); ++i) {
@@ -272,7 +275,7 @@ Index TopologyLevel::GetFaceBaseFace(Index f, int half) const {
 }
 
 bool TopologyLevel::IsFaceBaseSplit(Index f) const {
-    return HasHalves(_level->GetFaceSize(f)) && GetFaceBaseFace(f, 0) != GetFaceBaseFace(f, 1);
+    return _level->HasFaceHalves(f) && GetFaceBaseFace(f, 0) != GetFaceBaseFace(f, 1);
 }
 
 bool TopologyLevel::GetFaceBaseCoords(Index f, int half, float *uv) const {

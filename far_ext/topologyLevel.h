@@ -193,10 +193,12 @@ public:
     /// The rule that moves the vertex to the next level.  At a free boundary it is RULE_SMOOTH.
     Sdc::Crease::Rule GetVertexRule(Index v) const;
 
-    /// Sharpness of the crease that crosses a hexagon from its vertex 0 to its vertex 3; 0 where
-    /// none does.
+    /// Sharpness of the crease that crosses the face, along a diagonal; 0 where none does.
     float GetFaceDiagonalSharpness(Index f) const;
-    /// Whether the face is half a hexagon, cut by a sharp boundary along its edge 0.
+    /// The vertex of the face where a diagonal ends which begins at vertex 0, be it a crease, a seam or between
+    /// base faces: 3, but for faces that a truncation made of a vertex which a crease passes.
+    int GetFaceDiagonalEnd(Index f) const;
+    /// Whether the face is half a polygon, mostly half a hexagon, cut by a sharp boundary along its edge 0.
     bool IsFaceHalf(Index f) const;
     /// @}
 
@@ -210,10 +212,10 @@ public:
     /// The values of a face, by corner.  Of a face that a seam crosses, the two corners on the seam
     /// have a value to either side; those of the first half are given here.
     ConstIndexArray GetFaceFVarValues(Index f, int channel = 0) const;
-    /// Whether a seam crosses the face, a hexagon then, from its vertex 0 to its vertex 3.
+    /// Whether a seam crosses the face, from its vertex 0 to GetFaceDiagonalEnd().
     bool IsFaceFVarSplit(Index f, int channel = 0) const;
-    /// The values of half 0 (the vertices 0, 3, 4, 5 of the face) or 1 (3, 0, 1, 2) of a face that
-    /// a seam crosses.
+    /// The values of half 0 or 1 of a face that a seam crosses, in the order of GetPlaceInHalves(): of a hexagon for the
+    /// vertices 0, 3, 4, 5 of the face or 3, 0, 1, 2.
     ConstIndexArray GetFaceFVarValues(Index f, int channel, int half) const;
     /// Whether the values on both sides of the edge are the same.
     bool DoesEdgeFVarTopologyMatch(Index e, int channel = 0) const;
@@ -245,7 +247,7 @@ public:
     ///
     /// \param half  0 or 1, as in kHexagonHalves; both are the same for a face in one base face
     Index GetFaceBaseFace(Index f, int half = 0) const;
-    /// Whether the halves of the face, a hexagon then, lie in two faces of level 0.
+    /// Whether the halves of the face lie in two faces of level 0.
     bool IsFaceBaseSplit(Index f) const;
 
     /// \brief Coordinates of the face's vertices in a plane of its base face, for textures and pictures.

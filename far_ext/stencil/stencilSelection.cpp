@@ -61,7 +61,7 @@ std::vector<FacePart> findChildFaces(Refinement const &refinement,
         for (int local = 0; local < parent.GetFaceSize(pPart.face); ++local) {
             Index const pEdge = parent.faceEdges[first + local];
             Index const eFace = refinement.GetEdgeChildFace(pEdge);
-            if (eFace != Far::INDEX_INVALID && (pPart.halves >> GetHalfOfEdge(local) & 1u) != 0) {
+            if (eFace != Far::INDEX_INVALID && (pPart.halves >> parent.GetHalfOfFaceEdge(pPart.face, local) & 1u) != 0) {
                 bool const isFirst = parent.edgeFaces[pEdge][0] == pPart.face &&
                                      parent.edgeFaceLocals[pEdge][0] == local;
                 if (HasHalves(refinement.child->GetFaceSize(eFace))) {
@@ -71,9 +71,12 @@ std::vector<FacePart> findChildFaces(Refinement const &refinement,
                 }
             }
             forEachVFace(refinement, parent.faceVerts[first + local], [&](Index vFace) {
-                Cell const pCell = refinement.GetParentCell({vFace, 0});
-                if (pCell.face == pPart.face && (pPart.halves >> pCell.half & 1u) != 0) {
-                    result.push_back({vFace, kAllHalves});
+                bool const hasHalves = refinement.child->FindCrossedFace(vFace);
+                for (int half = 0; half < (hasHalves ? 2 : 1); ++half) {
+                    Cell const pCell = refinement.GetParentCell({vFace, half});
+                    if (pCell.face == pPart.face && (pPart.halves >> pCell.half & 1u) != 0) {
+                        result.push_back({vFace, hasHalves ? 1u << half : kAllHalves});
+                    }
                 }
             });
         }
@@ -83,13 +86,15 @@ std::vector<FacePart> findChildFaces(Refinement const &refinement,
 }
 
 // Appends the vertices of a face, all or those of one half.
-void appendPart(std::vector<Index> &indices, ConstIndexArray vertices, unsigned halves) {
+void appendPart(std::vector<Index> &indices, ConstIndexArray vertices, int diagonalEnd,
+                unsigned halves) {
     if (halves == kAllHalves) {
         append(indices, vertices);
         return;
     }
-    for (int local : kHexagonHalves[halves >> 1]) {
-        indices.push_back(vertices[local]);
+    int const half = int(halves >> 1);
+    for (int i = 0; i < GetHalfSize(half, vertices.size(), diagonalEnd); ++i) {
+        indices.push_back(vertices[GetPlaceInHalves(half, i, diagonalEnd)]);
     }
 }
 
@@ -149,7 +154,8 @@ std::vector<Index> FindVerticesOfFaces(Hierarchy const &hierarchy, int level, in
     std::vector<Index> verts;
     if (channel < 0) {
         for (FacePart const &part : parts) {
-            appendPart(verts, mesh.GetFaceVertices(part.face), part.halves);
+            appendPart(verts, mesh.GetFaceVertices(part.face), mesh.GetDiagonalEnd(part.face),
+                       part.halves);
         }
         SortUnique(verts, mesh.numVertices);
         return verts;
@@ -168,6 +174,7 @@ std::vector<Index> FindVerticesOfFaces(Hierarchy const &hierarchy, int level, in
             }
         } else {
             appendPart(verts, fvarLevel.values->GetFaceVertices(fvarLevel.valueFaces[part.face]),
+                       mesh.GetDiagonalEnd(part.face),
                        part.halves);
         }
     }

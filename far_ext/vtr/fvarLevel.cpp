@@ -165,8 +165,9 @@ namespace {
 
 // A V-face has the F-vertices of corners that no other V-face has, but for the one before the V-vertex
 // in a truncation.  No seam crosses these faces.
+template <typename ADD_SPLIT_FACE>
 void relateVFaces(Refinement const &mesh, Refinement const &values, FVarLevel const &pLevel,
-                  FVarLevel &cLevel) {
+                  FVarLevel &cLevel, ADD_SPLIT_FACE const &addSplitFace) {
     Level const &pMesh = *mesh.parent;
     Level const &cMesh = *mesh.child;
     Level const &pValues = *values.parent;
@@ -200,6 +201,15 @@ void relateVFaces(Refinement const &mesh, Refinement const &values, FVarLevel co
     for (Index face = cMesh.numFaces - cMesh.numVFaces; face < cMesh.numFaces; ++face) {
         cLevel.valueFaces[face] = vFaceOfMeshCorner[mesh.GetFaceParentCorner(face)];
     }
+    for (CrossedFace const &crossed : cMesh.crossedFaces) {
+        if (crossed.face < cMesh.numFaces - cMesh.numVFaces) {
+            continue; // an F-face
+        }
+        Index const second = vFaceOfMeshCorner[mesh.GetFaceFirstParentCorner(crossed.face)];
+        if (second != cLevel.valueFaces[crossed.face]) {
+            addSplitFace(crossed.face, cLevel.valueFaces[crossed.face], second);
+        }
+    }
 }
 
 } // namespace
@@ -213,14 +223,16 @@ void RefineFVarLevel(Refinement const &mesh, Refinement const &values, FVarLevel
     cLevel.splitFaces.clear();
 
     auto const addSplitFace = [&](Index cFace, Index first, Index second) {
-        FVarLevel::SplitFace split = {cFace, {first, second}, {}};
+        int const end = mesh.child->GetDiagonalEnd(cFace);
+        FVarLevel::SplitFace split = {cFace, {first, second}, end, {}};
+        split.cornerValues.resize(std::size_t(mesh.child->GetFaceSize(cFace)));
         for (int half = 1; half >= 0; --half) {
-            for (int i = 0; i < HexIndexing::kNumBoundaryEFaceCorners; ++i) {
-                split.cornerValues[kHexagonHalves[half][i]] =
-                    cValues.GetFaceVertices(split.valueFaces[half])[i];
+            Far::ConstIndexArray const ofHalf = cValues.GetFaceVertices(split.valueFaces[half]);
+            for (int i = 0; i < ofHalf.size(); ++i) {
+                split.cornerValues[std::size_t(GetPlaceInHalves(half, i, end))] = ofHalf[i];
             }
         }
-        cLevel.splitFaces.push_back(split);
+        cLevel.splitFaces.push_back(std::move(split));
     };
 
     // F-faces have the indices of their parents.
@@ -245,7 +257,7 @@ void RefineFVarLevel(Refinement const &mesh, Refinement const &values, FVarLevel
             }
         }
     }
-    relateVFaces(mesh, values, pLevel, cLevel);
+    relateVFaces(mesh, values, pLevel, cLevel, addSplitFace);
 }
 
 } // namespace OpenSubdivHex::FarExt::internal

@@ -22,9 +22,9 @@ struct FVarLevel {
     Index GetFaceEdge(Index face, int local) const {
         Index valueFace = valueFaces[face];
         if (SplitFace const *split = FindSplitFace(face)) {
-            bool const inFirst = local >= kDiagonalEnd;
+            bool const inFirst = local >= split->end;
             valueFace = split->valueFaces[inFirst ? 0 : 1];
-            local = inFirst ? local - kDiagonalEnd + 1 : local + 1;
+            local = inFirst ? local - split->end + 1 : local + 1;
         }
         return values->faceEdges[values->faceFirstCorner[valueFace] + local];
     }
@@ -32,8 +32,8 @@ struct FVarLevel {
     struct SplitFace {
         Index face;          ///< of the mesh
         Index valueFaces[2]; ///< its halves in the value mesh
-        Index cornerValues
-            [HexIndexing::kNumEFaceCorners]; ///< by corner; of the first half on the seam
+        int end;             ///< the corner where the seam ends
+        std::vector<Index> cornerValues; ///< by corner; of the first half on the seam
     };
     SplitFace const *FindSplitFace(Index face) const {
         auto const found =

@@ -123,6 +123,13 @@ struct LineEdge {
     Far::Index line; ///< the edge of level 0, in the numbering of the base
 };
 
+/// \brief A face that a line crosses from its vertex 0 to another one, and no hexagon that an edge made: the V-face
+/// that a truncation makes of a vertex which a crease passes, and what becomes of it.
+struct CrossedFace {
+    Far::Index face;
+    int end; ///< the vertex where the diagonal ends
+};
+
 /// @name The places of vertices in their edges, where a hexagonal step made both without boundaries
 /// @{
 /// All edges of a V-vertex are spokes, which begin there.
@@ -241,6 +248,28 @@ struct Level {
         return !halfFaces.empty() || !diagonalSharpness.empty() || !sectorCorners.empty();
     }
     float GetEdgeSharpness(Index e) const { return edgeSharpness.empty() ? 0 : edgeSharpness[e]; }
+    /// @name Faces in two halves
+    /// @{
+    CrossedFace const *FindCrossedFace(Index f) const {
+        if (crossedFaces.empty()) {
+            return nullptr;
+        }
+        auto const found = std::lower_bound(
+            crossedFaces.begin(), crossedFaces.end(), f,
+            [](CrossedFace const &crossed, Index face) { return crossed.face < face; });
+        return found != crossedFaces.end() && found->face == f ? &*found : nullptr;
+    }
+    /// The vertex where the diagonal of a face ends, if it has one.
+    int GetDiagonalEnd(Index f) const {
+        CrossedFace const *const crossed = FindCrossedFace(f);
+        return crossed ? crossed->end : kDiagonalEnd;
+    }
+    bool HasFaceHalves(Index f) const { return HasHalves(GetFaceSize(f)) || FindCrossedFace(f); }
+    /// The half that edge \p local of a face belongs to, if it has halves.
+    int GetHalfOfFaceEdge(Index f, int local) const {
+        return local < GetDiagonalEnd(f) ? 1 : 0;
+    }
+    /// @}
     float GetDiagonalSharpness(Index f) const {
         return diagonalSharpness.empty() ? 0 : diagonalSharpness[f];
     }
@@ -346,6 +375,7 @@ struct Level {
     static void ForEachTag(LEVEL &level, FUNCTION const &function) {
         function(level.edgeSharpness);
         function(level.diagonalSharpness);
+        function(level.crossedFaces);
         function(level.vertSharpness);
         function(level.faceHoles);
         function(level.nonManifoldVerts);
@@ -410,6 +440,7 @@ struct Level {
     // Tags; each array is empty in a level that has none of its kind.
     Buffer<float> edgeSharpness;     ///< by edge, of interior ones
     Buffer<float> diagonalSharpness; ///< by face
+    std::vector<CrossedFace> crossedFaces; ///< ascending; the same at all levels behind a truncation
     Buffer<float> vertSharpness;     ///< of the vertices of level 0, the only ones that have any
     Buffer<unsigned char> faceHoles; ///< by face: bit h is set when half h lies in holes
     std::vector<Index> nonManifoldVerts; ///< ascending

@@ -47,6 +47,10 @@ struct Refinement {
     Index GetFaceParentCorner(Index cFace) const {
         return GetChildVertexCorner(child->faceVerts[child->faceFirstCorner[cFace + 1] - 1]);
     }
+    /// Of a V-face that is crossed: that of its first vertex, which is beside half 1.
+    Index GetFaceFirstParentCorner(Index cFace) const {
+        return GetChildVertexCorner(child->faceVerts[child->faceFirstCorner[cFace]]);
+    }
     /// The parent edge of an E-face, and the parent vertex of a V-face.
     Index GetEFaceParent(Index cFace) const {
         return parent->faceEdges[GetFaceParentCorner(cFace)];
@@ -68,20 +72,25 @@ struct Refinement {
     /// \brief The cell of the parent that a cell of the child lies in.
     ///
     /// Quads of flat edges and V-faces lie in several: a quad counts to that of the first face of its
-    /// edge, a V-face to that of its last F-vertex, and there to half 0 at the ends of a diagonal.
+    /// edge, a V-face to that of its last F-vertex, and there to half 0 at the ends of a diagonal.  Half 1 of a
+    /// V-face that is crossed counts to that of its first vertex.
     Cell GetParentCell(Cell cCell) const {
         if (cCell.face < child->numFFaces) {
             return cCell;
         }
         if (cCell.face >= child->numFaces - child->numVFaces) {
-            Index const corner = GetFaceParentCorner(cCell.face);
+            bool const isCrossed = cCell.half == 1 && child->FindCrossedFace(cCell.face);
+            Index const corner = isCrossed ? GetFaceFirstParentCorner(cCell.face)
+                                           : GetFaceParentCorner(cCell.face);
             Index const face = parent->FindFaceOfCorner(corner);
             Index const local = corner - parent->faceFirstCorner[face];
-            return {face, kDiagonalStart < local && local < kDiagonalEnd ? 1 : 0};
+            bool const isBesideHalf1 = kDiagonalStart < local && local < parent->GetDiagonalEnd(face);
+            return {face, isBesideHalf1 ? 1 : 0};
         }
         Index const edge = GetEFaceParent(cCell.face);
         int const side = HasHalves(child->GetFaceSize(cCell.face)) ? cCell.half : 0;
-        return {parent->edgeFaces[edge][side], GetHalfOfEdge(parent->edgeFaceLocals[edge][side])};
+        Index const face = parent->edgeFaces[edge][side];
+        return {face, parent->GetHalfOfFaceEdge(face, parent->edgeFaceLocals[edge][side])};
     }
 
     /// Calls function(array) for all arrays of \p refinement, constant or not.

@@ -53,6 +53,7 @@ struct FaceTags {
     int size;
     bool isHalf;
     float diagonal; // share of the rule of a sharp diagonal
+    int diagonalEnd;
     SectorCorner const *sectors;
     SectorCorner const *endSectors;
     IrregularCorner const *irregular;
@@ -62,6 +63,7 @@ struct FaceTags {
 
     bool operator==(FaceTags const &other) const {
         return isHalf == other.isHalf && size == other.size && diagonal == other.diagonal &&
+               diagonalEnd == other.diagonalEnd &&
                std::equal(sectors, endSectors, other.sectors, other.endSectors,
                           [&](SectorCorner const &x, SectorCorner const &y) {
                               return x.corner - firstCorner == y.corner - other.firstCorner &&
@@ -89,7 +91,7 @@ struct FaceTags {
                 std::uint64_t const high = getBits(weight);
                 hash = (hash ^ (high << 32 | std::uint32_t(rest))) * kFactor;
             };
-            add(tags.diagonal, 0);
+            add(tags.diagonal, tags.diagonalEnd);
             for (SectorCorner const *sector = tags.sectors; sector != tags.endSectors; ++sector) {
                 add(sector->weight, sector->corner - tags.firstCorner);
                 add(sector->sectorSize, sector->kind);
@@ -412,6 +414,7 @@ void RefinementRules::DenseRuleMaker::readTags(Index face, FaceTags &tags) const
     tags.size = _level.GetFaceSize(face);
     tags.isHalf = _level.IsHalfFace(face);
     tags.diagonal = std::min(1.0f, _level.GetDiagonalSharpness(face));
+    tags.diagonalEnd = tags.diagonal > 0 ? _level.GetDiagonalEnd(face) : 0;
     auto const readOn = [end = tags.firstCorner + tags.size](auto const &all, auto const *&begin,
                                                              auto const *&behind) {
         begin = behind;
@@ -489,16 +492,19 @@ void RefinementRules::DenseRuleMaker::addRule(FaceTags const &tags) {
         }
         row[std::size_t(i)] += towards;
         if (sharp > 0) {
-            // Of a hexagon cut by its diagonal 0-3, each half follows the mask of a half face V, W, Q, P:
-            // V and W are the ends of the diagonal, Q and P the two vertices between them.  At the ends
-            // both halves have the same weights.
+            // Of a face cut by its diagonal, each half follows the mask of a half face V, W, Q, P ...: V and W are
+            // the ends of the diagonal, the others the vertices between them.  At the ends both halves have the
+            // same weights.
             std::vector<int> half;
             if (tags.isHalf) {
                 half.resize(std::size_t(size));
                 std::iota(half.begin(), half.end(), 0);
             } else {
-                auto const &ofHexagon = kHexagonHalves[i < kDiagonalEnd ? 1 : 0];
-                half.assign(std::begin(ofHexagon), std::end(ofHexagon));
+                int const side = i < tags.diagonalEnd ? 1 : 0;
+                half.resize(std::size_t(GetHalfSize(side, size, tags.diagonalEnd)));
+                for (std::size_t j = 0; j < half.size(); ++j) {
+                    half[j] = GetPlaceInHalves(side, int(j), tags.diagonalEnd);
+                }
             }
             std::size_t const place =
                 std::size_t(std::find(half.begin(), half.end(), i) - half.begin());

@@ -92,7 +92,8 @@ std::vector<Index> findSharpVertices(Level const &level) {
     for (std::size_t face = 0; face < level.diagonalSharpness.size(); ++face) {
         if (Crease::IsSharp(level.diagonalSharpness[face])) {
             verts.push_back(level.faceVerts[level.faceFirstCorner[face] + kDiagonalStart]);
-            verts.push_back(level.faceVerts[level.faceFirstCorner[face] + kDiagonalEnd]);
+            verts.push_back(
+                level.faceVerts[level.faceFirstCorner[face] + level.GetDiagonalEnd(Index(face))]);
         }
     }
     for (std::size_t vert = 0; vert < level.vertSharpness.size(); ++vert) {
@@ -504,7 +505,7 @@ void refineEdges(Refinement const &refinement, SharpnessRefiner const &refiner, 
         if (!Crease::IsSharp(sharpness)) {
             continue;
         }
-        for (int local : {kDiagonalStart, kDiagonalEnd}) {
+        for (int local : {kDiagonalStart, parent.GetDiagonalEnd(face)}) {
             Index const corner = parent.faceFirstCorner[face] + local;
             Index const spoke = findSpoke(refinement, corner, child);
             child.edgeSharpness[spoke] = refiner.AtVertex(sharpness, parent.faceVerts[corner]);
@@ -572,6 +573,24 @@ void refineEdgesOfTruncation(Refinement const &refinement, SharpnessRefiner cons
     dropIfSmooth(child.edgeSharpness);
 }
 
+// Where a crease passes a vertex the diagonal of the V-face is as sharp as its less sharp end.
+void refineDiagonalsOfTruncation(Refinement const &refinement, SharpnessRefiner const &refiner,
+                                 Level &child) {
+    Level const &parent = *refinement.parent;
+    fillZero(child.diagonalSharpness, std::size_t(child.numFaces));
+    for (CrossedFace const &crossed : child.crossedFaces) {
+        auto const getSharpness = [&](int local) {
+            Index const cVert = child.faceVerts[child.faceFirstCorner[crossed.face] + local];
+            Index const corner = refinement.GetChildVertexCorner(cVert);
+            return refiner.AtVertex(parent.GetEdgeSharpness(parent.faceEdges[corner]),
+                                    parent.faceVerts[corner]);
+        };
+        child.diagonalSharpness[crossed.face] =
+            std::min(getSharpness(kDiagonalStart), getSharpness(crossed.end));
+    }
+    dropIfSmooth(child.diagonalSharpness);
+}
+
 // The halves of a hexagon lie in the cells of its edge's faces.  Other faces that lie in several cells
 // are holes when all of these are.
 void refineHoles(Refinement const &refinement, Level &child) {
@@ -591,7 +610,8 @@ void refineHoles(Refinement const &refinement, Level &child) {
         for (int side = 0; side < 2; ++side) {
             int const from = parent.IsBoundary(edge) ? 0 : side;
             holes[side] = getHole(parent.edgeFaces[edge][from],
-                                  GetHalfOfEdge(parent.edgeFaceLocals[edge][from]));
+                                  parent.GetHalfOfFaceEdge(parent.edgeFaces[edge][from],
+                                                           parent.edgeFaceLocals[edge][from]));
         }
         child.faceHoles[cFace] = static_cast<unsigned char>(HasHalves(child.GetFaceSize(cFace))
                                                                 ? (holes[0] & 1u) | (holes[1] & 2u)
@@ -599,7 +619,12 @@ void refineHoles(Refinement const &refinement, Level &child) {
     }
     for (Index cFace = child.numFaces - child.numVFaces; cFace < child.numFaces; ++cFace) {
         if (refinement.isTruncation) { // holes end at cuts
-            child.faceHoles[cFace] = parent.faceHoles[refinement.GetFaceParentFace(cFace)];
+            unsigned holes = 0;
+            for (int half : {0, 1}) {
+                Index const pFace = refinement.GetParentCell({cFace, half}).face;
+                holes |= parent.faceHoles[pFace] & 1u << half;
+            }
+            child.faceHoles[cFace] = static_cast<unsigned char>(holes);
             continue;
         }
         unsigned hole = kHole;
@@ -609,8 +634,8 @@ void refineHoles(Refinement const &refinement, Level &child) {
                 Index const pFace = parent.FindFaceOfCorner(corner);
                 int const local = corner - parent.faceFirstCorner[pFace];
                 // A corner lies in the halves of its two edges.
-                hole &= getHole(pFace, GetHalfOfEdge(local)) &
-                        getHole(pFace, GetHalfOfEdge(local == 0 ? kDiagonalEnd : local - 1));
+                hole &= getHole(pFace, parent.GetHalfOfFaceEdge(pFace, local)) &
+                        getHole(pFace, local == 0 ? 0 : parent.GetHalfOfFaceEdge(pFace, local - 1));
             }
         }
         child.faceHoles[cFace] = static_cast<unsigned char>(hole);
@@ -642,6 +667,9 @@ void RefineTags(Refinement const &refinement, Sdc::Options sdcOptions, Level &ch
     }
     SharpnessRefiner const refiner(parent, sdcOptions);
     if (refinement.isTruncation) {
+        if (!parent.edgeSharpness.empty()) {
+            refineDiagonalsOfTruncation(refinement, refiner, child);
+        }
         if (!parent.edgeSharpness.empty() && child.hasFullTopology) {
             refineEdgesOfTruncation(refinement, refiner, child);
         }

@@ -42,6 +42,14 @@ public:
             bool const isEndCut = numCuts < 2 ? !isWhole : isCut(_mesh.faceEdges[corner]);
             setCut(corner, isEndCut);
         }
+        if (numCuts == 2 && passes(vert, fan)) {
+            for (Index k = fan.begin; k < fan.end; ++k) {
+                if (EndCut &cut = _cuts[FindEdgeEnd(_mesh, _mesh.GetVertexCorner(k))];
+                    cut == EndCut::Cut) {
+                    cut = EndCut::Passed;
+                }
+            }
+        }
     }
     // From boundary to boundary.
     void CutOpenFan(Index vert, VertexFan const &fan) {
@@ -64,19 +72,40 @@ private:
     void setCut(Index corner, bool isEndCut) {
         _cuts[FindEdgeEnd(_mesh, corner)] = isEndCut ? EndCut::Cut : EndCut::Whole;
     }
-    // Whether the border from the one end of a fan to the other passes the vertex, if nothing else cuts its polygon.
+    // Whether a line passes the vertex whose polygon has two cuts.
     bool passes(Index vert, VertexFan const &fan) const {
         SharpVertex const *const sharp = _mesh.FindSharpVertex(vert);
-        if (!sharp || sharp->rule != Crease::RULE_CREASE || _mesh.IsNonManifold(vert) ||
-            fan.GetSize() < 2 || fan.GetSize() > kMaxPassedFaces) {
+        if (!sharp || sharp->rule != Crease::RULE_CREASE || _mesh.IsNonManifold(vert)) {
             return false;
         }
-        return std::none_of(
-            _base.channels.begin(), _base.channels.end(), [&](FVarChannel const &channel) {
-                Level const &values = channel.values.levels[0];
-                Index const value = values.faceVerts[_mesh.GetVertexCorner(fan.begin)];
-                return Crease::IsSharp(values.GetVertexSharpness(value));
-            });
+        Index cuts[2] = {fan.begin, fan.end}; // positions of the faces behind them
+        if (fan.isClosed) {
+            Index *next = cuts;
+            for (Index k = fan.begin; k < fan.end; ++k) {
+                if (_cuts[FindEdgeEnd(_mesh, _mesh.GetVertexCorner(k))] == EndCut::Cut) {
+                    *next++ = k;
+                }
+            }
+        }
+        Index const before = cuts[1] - cuts[0];
+        Index const behind = fan.isClosed ? fan.GetSize() - before : before;
+        if (std::min(before, behind) < 2 || std::max(before, behind) > kMaxPassedFaces) {
+            return false;
+        }
+        auto const passesValues = [&](FVarChannel const &channel) {
+            Level const &values = channel.values.levels[0];
+            for (Index k = fan.begin; k < fan.end; ++k) {
+                Index const value = values.faceVerts[_mesh.GetVertexCorner(k)];
+                if (Crease::IsSharp(values.GetVertexSharpness(value))) {
+                    return false;
+                }
+            }
+            auto const isSeamAt = [&](Index k) {
+                return isSeam(_mesh.faceEdges[_mesh.GetVertexCorner(k)], channel);
+            };
+            return !fan.isClosed || isSeamAt(cuts[0]) == isSeamAt(cuts[1]);
+        };
+        return std::all_of(_base.channels.begin(), _base.channels.end(), passesValues);
     }
     bool isCut(Index edge) const {
         return _mesh.IsBoundary(edge) || Crease::IsSharp(_mesh.GetEdgeSharpness(edge)) ||
@@ -89,14 +118,15 @@ private:
                _mesh.GetHoles(faces[0]) != _mesh.GetHoles(faces[1]) || isSeam(edge);
     }
     bool isSeam(Index edge) const {
-        auto const partsValues = [&](FVarChannel const &channel) {
-            auto const getValueEdge = [&](int side) {
-                return channel.levels[0].GetFaceEdge(_mesh.edgeFaces[edge][side],
-                                                     _mesh.edgeFaceLocals[edge][side]);
-            };
-            return getValueEdge(0) != getValueEdge(1);
+        return std::any_of(_base.channels.begin(), _base.channels.end(),
+                           [&](FVarChannel const &channel) { return isSeam(edge, channel); });
+    }
+    bool isSeam(Index edge, FVarChannel const &channel) const {
+        auto const getValueEdge = [&](int side) {
+            return channel.levels[0].GetFaceEdge(_mesh.edgeFaces[edge][side],
+                                                 _mesh.edgeFaceLocals[edge][side]);
         };
-        return std::any_of(_base.channels.begin(), _base.channels.end(), partsValues);
+        return getValueEdge(0) != getValueEdge(1);
     }
 
     Hierarchy const &_base;
@@ -201,7 +231,11 @@ void TruncationRefiner::forEachVFace(Index pVert, FUNCTION function) const {
             return;
         }
         if (_cuts[FindEdgeEnd(_parent, _parent.GetVertexCorner(start))] == EndCut::Passed) {
-            function(VFace{fan, start, size, false, true});
+            int end = 0;
+            for (Index i = 1; fan.isClosed && i < size && end == 0; ++i) {
+                end = beginsWedge(fan.Advance(start, i)) ? int(i) : 0;
+            }
+            function(VFace{fan, start, size, false, !fan.isClosed, end});
             return;
         }
         Index begin = 0; // of the wedge, seen from the start
@@ -212,6 +246,27 @@ void TruncationRefiner::forEachVFace(Index pVert, FUNCTION function) const {
             }
         }
     });
+}
+
+void TruncationRefiner::listCrossedFaces(Level &child) const {
+    std::vector<std::vector<CrossedFace>> facesOfRanges(
+        std::size_t(GetNumParallelRanges(_parent.numVertices)));
+    ParallelForRange(_parent.numVertices, [&](Index begin, Index end) {
+        auto const range = std::size_t(begin / kParallelRange);
+        Index cFace = _parent.numFaces + Index(_vertexCounts[range].faces);
+        for (Index pVert = begin; pVert < end; ++pVert) {
+            forEachVFace(pVert, [&](VFace const &vFace) {
+                if (vFace.diagonalEnd > 0) {
+                    facesOfRanges[range].push_back({cFace, vFace.diagonalEnd});
+                }
+                ++cFace;
+            });
+        }
+    });
+    child.crossedFaces.clear();
+    for (std::vector<CrossedFace> const &faces : facesOfRanges) {
+        child.crossedFaces.insert(child.crossedFaces.end(), faces.begin(), faces.end());
+    }
 }
 
 void TruncationRefiner::relate(Refinement &refinement) const {
@@ -303,7 +358,9 @@ private:
                              Index(_refiner._edgeCounts.back().edges + before.edges);
             for (Index pVert = begin; pVert < end; ++pVert) {
                 _refiner.forEachVFace(pVert, [&](VFace const &vFace) {
-                    if (vFace.isHalf) {
+                    if (vFace.diagonalEnd > 0) {
+                        fillCrossedFace(vFace, place);
+                    } else if (vFace.isHalf) {
                         fillHalfFace(vFace, longEdge++, place);
                     } else {
                         fillVFace(pVert, vFace, place);
@@ -312,6 +369,16 @@ private:
             }
         });
     }
+    void fillCrossedFace(VFace const &vFace, NextFace &place) {
+        beginFace(place);
+        addFVertices(vFace, place);
+    }
+    void addFVertices(VFace const &vFace, NextFace &place) {
+        for (Index i = 0; i < vFace.count; ++i) {
+            Index const corner = _p.GetVertexCorner(vFace.GetPosition(i));
+            addCorner(place, fVertex(corner), cornerEdge(corner, kSecond));
+        }
+    }
     void fillHalfFace(VFace const &vFace, Index longEdge, NextFace &place) {
         beginFace(place);
         Index const last = getInCorner(_p, vFace.GetPosition(vFace.count - 1));
@@ -319,10 +386,7 @@ private:
         if constexpr (FULL) {
             _edges[std::size_t(longEdge)].corners[kSecond] = kSharpBoundaryB;
         }
-        for (Index i = 0; i < vFace.count; ++i) {
-            Index const corner = _p.GetVertexCorner(vFace.GetPosition(i));
-            addCorner(place, fVertex(corner), cornerEdge(corner, kSecond));
-        }
+        addFVertices(vFace, place);
     }
     void fillVFace(Index pVert, VFace const &vFace, NextFace &place) {
         auto const cornerAt = [&](Index i) { return _p.GetVertexCorner(vFace.GetPosition(i)); };
@@ -368,6 +432,7 @@ void TruncationRefiner::Refine(bool fullTopology, Refinement &refinement, Level 
     child.numVVertices = Index(_vertexCounts.back().vertices);
     child.numVFaces = Index(_vertexCounts.back().faces);
     relate(refinement);
+    listCrossedFaces(child);
     if (fullTopology) {
         Builder<true> builder(*this, refinement, child);
         builder.Build();

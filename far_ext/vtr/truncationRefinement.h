@@ -26,8 +26,9 @@ using EndCuts = std::vector<EndCut>;
 /// one such edge ends, but for a dart, or none though it is sharp itself, is cut at all its edges; so
 /// is one with two faces, whose polygon would have two vertices.
 ///
-/// A line passes a vertex whose rule is that of a crease between two boundaries, which are cut alone, with two to
-/// kMaxPassedFaces faces; unless it is non-manifold, or a value of a channel is sharp there.
+/// A line passes a vertex whose rule is that of a crease if it is cut at the two edges of that alone, and has two to
+/// kMaxPassedFaces faces on each side; unless it is non-manifold, or in a channel one of the edges is a seam, or a value
+/// is sharp there.
 EndCuts FindEndCuts(Hierarchy const &base, Far::ConstIndexArray labels);
 
 /// Cuts for the value mesh of a channel of \p mesh, both of level 0.
@@ -37,7 +38,8 @@ EndCuts GetEndCutsOfChannel(Level const &mesh, EndCuts const &cuts, FVarLevel co
 ///
 /// A face of n sides becomes an F-face of 2n vertices, two on each edge; a vertex a V-face of those
 /// beside it.  Where it is cut, the vertex makes a V-vertex and a V-face for each wedge between two
-/// cuts.  Where a border passes it, its V-face is a half face, whose long edge is on the border.  The vertices on edges count as F-vertices: each has the corner where a face begins to run
+/// cuts.  Where a border passes it, its V-face is a half face, whose long edge is on the border; where a crease does,
+/// its V-face is crossed by a diagonal (CrossedFace).  The vertices on edges count as F-vertices: each has the corner where a face begins to run
 /// along the edge from there.  The one at the far end of a boundary has no such corner and follows
 /// them all.  The last vertex of a V-face is the F-vertex of a corner at its vertex.
 /// INDEXING.md has the numbering.
@@ -60,6 +62,7 @@ private:
     template <typename FUNCTION>
     void forEachVFace(Index pVert, FUNCTION function) const;
     void relate(Refinement &refinement) const;
+    void listCrossedFaces(Level &child) const;
 
     Level const &_parent;
     EndCuts const _cuts;

@@ -41,10 +41,11 @@ void GatherFanItems(Level const &level, VertexFan const &fan, FanItems &result) 
         Index const inEdge = level.faceEdges[prev];
         items.push_back(edgeItem(level, outEdge, level.faceVerts[next]));
         float const diagonal = level.GetDiagonalSharpness(face);
-        if ((local == kDiagonalStart || local == kDiagonalEnd) && Crease::IsSharp(diagonal)) {
+        int const diagonalEnd = Crease::IsSharp(diagonal) ? level.GetDiagonalEnd(face) : -1;
+        if (diagonalEnd >= 0 && (local == kDiagonalStart || local == diagonalEnd)) {
             // Seen from the start of the diagonal, half 1 comes first, from its end half 0.
             int const half = local == kDiagonalStart ? 1 : 0;
-            Index const end = corner - local + kDiagonalStart + kDiagonalEnd - local;
+            Index const end = corner - local + kDiagonalStart + diagonalEnd - local;
             items.push_back(faceItem(face, corner, true, half));
             items.push_back(lineItem(level.faceVerts[end], true, diagonal));
             items.push_back(faceItem(face, corner, true, 1 - half));

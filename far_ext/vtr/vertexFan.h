@@ -29,6 +29,7 @@ struct VFace {
     Far::Index count;
     bool hasVVertex; ///< in the polygon too
     bool isHalf = false; ///< a half face, along whose long edge a border passes the vertex
+    int diagonalEnd = 0; ///< of a face that a crease which passes the vertex crosses: the faces before it; else 0
 
     /// The position of its face \p i.
     Far::Index GetPosition(Far::Index i) const { return fan.Advance(begin, i); }

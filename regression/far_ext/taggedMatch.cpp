@@ -243,10 +243,14 @@ TaggedMatch::Place TaggedMatch::placeOfVFace(TaggedMesh::Face const &face, VFace
             vertices.back() = made[corner];
         }
     }
-    auto const found = vFaces.find(fromLowest(vertices));
     Place place;
+    if (face.isHalf && face.vertices.size() > 1 &&
+        _levels[level].edges[face.edges[0]].sides.size() == 2) {
+        return placeOfHalfVFace(vertices, level);
+    }
+    auto const found = vFaces.find(fromLowest(vertices));
     if (found == vFaces.end()) {
-        return place;
+        return _channel < 0 || !face.isHalf ? place : placeOfHalfVFace(vertices, level);
     }
     place.face = found->second;
     auto const actual = _refiner.GetLevel(level).GetFaceVertices(place.face);
@@ -261,6 +265,38 @@ TaggedMatch::Place TaggedMatch::placeOfVFace(TaggedMesh::Face const &face, VFace
             std::iota(place.corners.begin(), place.corners.end(), 0);
             std::rotate(place.corners.begin(), place.corners.begin() + first, place.corners.end());
             break;
+        }
+    }
+    return place;
+}
+
+// Of a half of a V-face that a crease or seam crosses.
+TaggedMatch::Place TaggedMatch::placeOfHalfVFace(std::vector<int> const &vertices,
+                                                 int level) const {
+    TopologyLevel const &library = _refiner.GetLevel(level);
+    Place place;
+    for (int f = 0; f < library.GetNumFaces(); ++f) {
+        auto const all = library.GetFaceVertices(f);
+        int const end = library.GetFaceDiagonalEnd(f);
+        if (library.GetFaceKind(f) != FarExt::FaceKind::Vertex || end >= all.size()) {
+            continue;
+        }
+        for (int half : {0, 1}) {
+            std::vector<int> corners;
+            std::vector<int> ofHalf;
+            for (int i = 0; i < FarExt::GetHalfSize(half, all.size(), end); ++i) {
+                corners.push_back(FarExt::GetPlaceInHalves(half, i, end));
+                ofHalf.push_back(all[corners.back()]);
+            }
+            // Of a channel the end of a seam has no vertex of the mesh of its own.
+            bool isSame = ofHalf.size() == vertices.size();
+            for (std::size_t i = _channel < 0 ? 0 : 1; isSame && i < vertices.size(); ++i) {
+                isSame = ofHalf[i] == vertices[i];
+            }
+            if (isSame) {
+                place.face = f;
+                place.corners = corners;
+            }
         }
     }
     return place;
@@ -332,11 +368,12 @@ bool TaggedMatch::matchFaces(int level) {
             place = placeOf(origin, pLevel, level);
             if (origin.mergedWith >= 0) {
                 Place const other = placeOf(mesh.mergedOrigins[origin.mergedWith], pLevel, level);
-                if (other.face != place.face || place.corners.size() != 4) {
+                if (other.face != place.face || int(place.corners.size() + other.corners.size()) !=
+                                                    int(face.vertices.size()) + 2) {
                     return fail(level, "halves of two faces");
                 }
-                place.corners = {place.corners[0], other.corners[2], other.corners[3],
-                                 place.corners[1], place.corners[2], place.corners[3]};
+                place.corners.insert(place.corners.begin() + 1, other.corners.begin() + 2,
+                                     other.corners.end());
             }
         }
         std::string const name = "face " + std::to_string(place.face);
@@ -354,8 +391,8 @@ bool TaggedMatch::matchFaces(int level) {
             return fail(level, name + " has other tags");
         }
         for (int i = 0; i < int(face.holes.size()) && _channel < 0; ++i) {
-            int const half = place.corners[i] < 3 ? 1 : 0;
-            bool const isHole = isWhole && size == 6 ? library.IsFaceHole(place.face, half)
+            int const half = place.corners[i] < library.GetFaceDiagonalEnd(place.face) ? 1 : 0;
+            bool const isHole = isWhole && !face.isHalf ? library.IsFaceHole(place.face, half)
                                 : isWhole            ? library.IsFaceHole(place.face)
                                           : library.IsFaceHole(place.face, GetHalf(place));
             if (isHole != face.holes[i]) {
@@ -372,7 +409,8 @@ bool TaggedMatch::matchFaces(int level) {
         std::vector<int> expected(library.GetFaceVertices(f).size());
         std::iota(expected.begin(), expected.end(), 0);
         if (covered[f].size() != expected.size()) {
-            expected.insert(expected.end(), {0, 3}); // halves share the line
+            expected.insert(expected.end(),
+                            {0, library.GetFaceDiagonalEnd(f)}); // halves share the line
         }
         std::sort(covered[f].begin(), covered[f].end());
         std::sort(expected.begin(), expected.end());

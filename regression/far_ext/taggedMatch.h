@@ -70,6 +70,7 @@ private:
     ReferenceStep makeStep(int level) const;
     VFaces findVFaces(int level) const;
     Place placeOfVFace(TaggedMesh::Face const &face, VFaces const &vFaces, int level) const;
+    Place placeOfHalfVFace(std::vector<int> const &vertices, int level) const;
     Place placeOf(TaggedMesh::FaceOrigin const &origin, FarExt::TopologyLevel const &pLevel,
                   int level) const;
     bool matchFaces(int level);

@@ -334,26 +334,34 @@ private:
         if (line.sides.size() == 1) {
             return halfPoint(face, corner.place) + fromOneFace(face, corner);
         }
-        // The hexagon that the two halves make: V, R, S, W, Q, P.
+        // The polygon that the two halves make, mostly a hexagon: V, R, S, W, Q, P.
         bool const isFirst = line.sides[0].face == corner.face;
         Face const &other = _mesh.faces[line.sides[isFirst ? 1 : 0].face];
-        std::vector<int> const &own = face.vertices;
-        std::vector<Point> const hexagon =
-            pointsOf({own[0], other.vertices[2], other.vertices[3], own[1], own[2], own[3]});
-        int const places[] = {0, 3, 4, 5};
+        std::vector<int> whole{face.vertices[0]};
+        whole.insert(whole.end(), other.vertices.begin() + 2, other.vertices.end());
+        std::vector<int> places{0, int(whole.size())};
+        whole.insert(whole.end(), face.vertices.begin() + 1, face.vertices.end());
+        while (places.size() < face.vertices.size()) {
+            places.push_back(places.back() + 1);
+        }
+        std::vector<Point> const hexagon = pointsOf(whole);
         std::size_t const place = std::size_t(corner.place);
+        bool const isHexagon = hexagon.size() == 6 && places[1] == 3;
         std::optional<Point> byPath;
         double share = 0;
-        if (hasIrregularRules()) {
+        if (hasIrregularRules() && hexagon.size() == 6) {
             auto const [out, in] = pathsOf(corner);
             byPath = NewPointByPath(hexagon, places[place], out, in);
             share = out.GetShare();
         }
-        Point const smooth = mixByPath(byPath, share, maskPoint(hexagon, places[place]));
+        bool const isQuad = hasIrregularRules() && hexagon.size() == 4;
+        Point const smooth =
+            isQuad ? NewPointOfQuad(_mesh.numHexagonalSteps, hexagon, places[place])
+                   : mixByPath(byPath, share, maskPoint(hexagon, places[place]));
         double const sharp = _isVarying ? 0 : std::min(1.0, double(line.sharpness));
         Point const plain = sharp * halfPoint(face, corner.place) + towards * vertex +
                             (1 - sharp - towards) * smooth + fromOneFace(face, corner);
-        if (!hasIrregularRules()) {
+        if (!hasIrregularRules() || !isHexagon) {
             return plain;
         }
         int const self = corner.face;

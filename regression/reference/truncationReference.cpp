@@ -59,14 +59,36 @@ ReferenceCuts FindCuts(TaggedMesh const &mesh, std::vector<TaggedMesh> const &va
                 result.cuts[corner.face][corner.place] = true;
             }
         }
-        // A border goes through a vertex with two faces and more where nothing else is.
-        bool isPassed = fans.size() == 1 && !fans[0].isClosed && fans[0].corners.size() > 1 &&
-                        !isSharp && GetRule(mesh, v) == TaggedRule::Crease;
-        for (std::size_t i = 0; isPassed && i < fans[0].corners.size(); ++i) {
-            Side const corner = fans[0].corners[i];
-            isPassed = result.cuts[corner.face][corner.place] == (i == 0);
-            for (TaggedMesh const &valueMesh : values) {
-                isPassed = isPassed && valueMesh.vertices[valueMesh.GetStart(corner)].sharpness == 0;
+        // A line goes through a vertex with two faces and more on each side where nothing else is.
+        bool isPassed =
+            fans.size() == 1 && !isSharp && GetRule(mesh, v) == TaggedRule::Crease;
+        if (isPassed) {
+            std::vector<Side> const &corners = fans[0].corners;
+            std::vector<int> ends;
+            for (int i = 0; i < int(corners.size()); ++i) {
+                if (result.cuts[corners[i].face][corners[i].place]) {
+                    ends.push_back(i);
+                }
+                for (TaggedMesh const &valueMesh : values) {
+                    isPassed = isPassed &&
+                               valueMesh.vertices[valueMesh.GetStart(corners[i])].sharpness == 0;
+                }
+            }
+            int const size = int(corners.size());
+            if (!fans[0].isClosed) {
+                isPassed = isPassed && ends.size() == 1 && 2 <= size && size <= 64;
+            } else if (ends.size() != 2) {
+                isPassed = false;
+            } else {
+                int const before = ends[1] - ends[0];
+                isPassed = isPassed && 2 <= before && before <= 64 && 2 <= size - before &&
+                           size - before <= 64;
+                for (TaggedMesh const &valueMesh : values) {
+                    bool const isSeam[] = {
+                        edgeOf(valueMesh, corners[ends[0]]).sides.size() == 1,
+                        edgeOf(valueMesh, corners[ends[1]]).sides.size() == 1};
+                    isPassed = isPassed && isSeam[0] == isSeam[1];
+                }
             }
         }
         for (Side corner : mesh.vertices[v].corners) {
@@ -181,6 +203,18 @@ private:
         _child.faceOrigins.push_back(origin);
     }
 
+    /// Where a line passes a vertex, that of its less sharp end.
+    float sharpnessThrough(int v) const {
+        float result = kInfiniteSharpness;
+        for (SharpEdge const &edge : sharpEdges(_parent, v)) {
+            float const atVertex = isInfinite(edge.sharpness)
+                                       ? edge.sharpness
+                                       : childSharpness(_parent, v, edge.sharpness);
+            result = std::min(result, atVertex);
+        }
+        return result;
+    }
+
     /// The tags of a new edge.
     Edge makeEdge(Key const &key) const {
         Edge result;
@@ -189,7 +223,7 @@ private:
         }
         if (key[0] == Through) {
             result.isLong = true;
-            result.sharpness = kInfiniteSharpness;
+            result.sharpness = sharpnessThrough(key[1]);
             return result;
         }
         Edge const &edge = _parent.edges[key[1]];
@@ -228,11 +262,16 @@ private:
         std::vector<Side> corners = fan.corners;
         auto const isCut = [this](Side corner) { return isCutBefore(corner); };
         auto const first = std::find_if(corners.begin(), corners.end(), isCut);
+        bool const isSmooth = isPassed(v) && sharpnessThrough(v) <= 0;
         if (first == corners.end()) {
             makeVFace(v, corners, false);
             return;
         }
         std::rotate(corners.begin(), first, corners.end());
+        if (isSmooth && fan.isClosed) { // its halves are one
+            makeVFace(v, corners, false);
+            return;
+        }
         std::vector<Side> sector;
         for (Side corner : corners) {
             if (isCut(corner) && !sector.empty()) {
@@ -271,6 +310,11 @@ private:
             return _parent.faces[corner.face].holes[0];
         });
         addFace(vertices, keys, isHalf, isHole, origin);
+        if (!isSector && isPassed(v)) {
+            for (std::size_t i = 0; i < corners.size(); ++i) {
+                _child.faces.back().holes[i] = _parent.faces[corners[i].face].holes[0];
+            }
+        }
     }
 
     TaggedMesh const &_parent;
