@@ -114,6 +114,16 @@ private:
     void forEachMarked(Index begin, Index end, FUNCTION const &function) const;
     void findCorners();
     IrregularCorner *writeCorners(Index face, Mark mark, IrregularCorner *next) const;
+    // Of the masks beside the quad on a side of an E-face.
+    float findShareBesideQuad(Index face, EFaceSide const &side) const {
+        float sharpness = _level.GetDiagonalSharpness(face);
+        if (!_level.crossedFaces.empty()) { // which a quad may be
+            Index const corner = _level.faceFirstCorner[face] + side.fFaceEdge;
+            Index const quad = _level.GetCornerAcross(corner).face;
+            sharpness = std::max(sharpness, _level.GetDiagonalSharpness(quad));
+        }
+        return smoothPart(sharpness);
+    }
     // Whether a path tells the mask of a corner.
     bool hasQuadRow(Index corner) const {
         QuadCorner const *const quad = _level.FindQuadCorner(corner);
@@ -195,7 +205,8 @@ void IrregularFinder::markFacesOfVertices() {
 
 void IrregularFinder::markFacesBesideQuads() {
     for (Index quad = 0; quad < _level.numFFaces; ++quad) {
-        if (_level.GetFaceSize(quad) != kQuad || _level.IsHalfFace(quad)) {
+        if (_level.GetFaceSize(quad) != kQuad || _level.IsHalfFace(quad) ||
+            smoothPart(_level.GetDiagonalSharpness(quad)) == 0) {
             continue;
         }
         Index const first = _level.faceFirstCorner[quad];
@@ -250,12 +261,12 @@ void IrregularFinder::findCorners() {
 // Ascending.  Returns the end of what it writes.
 IrregularCorner *IrregularFinder::writeCorners(Index face, Mark mark, IrregularCorner *next) const {
     Index const first = _level.faceFirstCorner[face];
-    float const besideQuad = smoothPart(_level.GetDiagonalSharpness(face));
     IrregularCorner found[kHexagon];
     unsigned places = 0;
     forEachCorner(mark, _numRows, [&](Side const &side, int local, IrregularCorner::Kind kind) {
         local %= kHexagon;
         if (IrregularCorner::IsAtQuad(kind)) {
+            float const besideQuad = findShareBesideQuad(face, side.places);
             found[local] = {first + local, 0, besideQuad, kind, FacesAround::Others};
         } else {
             Index const vert = _level.faceVerts[first + side.places.startVertex];

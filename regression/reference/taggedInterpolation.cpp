@@ -201,20 +201,22 @@ public:
         if (_mesh.numHexagonalSteps == 0 || !isMadeForEdge(corners[0].face)) {
             return plain;
         }
-        auto const blend = [&](Point const &point) {
-            double const share = std::max(0.0, 1 - sharpness);
+        auto const blend = [&](Point const &point, int edge) {
+            double const ofQuad = quadSharpness(across(corners[edge]));
+            double const share = std::max(0.0, 1 - std::max(sharpness, ofQuad));
             return share > 0 ? Point(share * point + (1 - share) * plain) : plain;
         };
         std::vector<int> edges; // to quads
         for (int edge = 0; edge < 6; ++edge) {
-            if (isQuad(across(corners[edge]))) {
+            if (double const ofQuad = quadSharpness(across(corners[edge]));
+                0 <= ofQuad && ofQuad < 1) {
                 edges.push_back(edge);
             }
         }
         for (int edge : edges) {
             auto const point = NewPointBesideQuad(_mesh.numHexagonalSteps, hexagon, i, edge);
             if (point && (edge == i || edge == (i + 5) % 6)) {
-                return blend(*point);
+                return blend(*point, edge);
             }
         }
         for (int corner : {i, (i + 1) % 6, (i + 5) % 6}) {
@@ -229,7 +231,7 @@ public:
         if (edges.size() == 1) {
             if (auto const point =
                     NewPointBesideQuad(_mesh.numHexagonalSteps, hexagon, i, edges[0])) {
-                return blend(*point);
+                return blend(*point, edges[0]);
             }
         }
         return plain;
@@ -249,10 +251,22 @@ private:
             edge.sides[0].face == corner.face && edge.sides[0].place == corner.place;
         return edge.sides[isFirst ? 1 : 0].face;
     }
-    /// The smaller copy of a quad.
-    bool isQuad(int face) const {
-        return face >= 0 && _mesh.faceOrigins[face].face >= 0 && !_mesh.faces[face].isHalf &&
-               _mesh.faces[face].vertices.size() == 4;
+    /// How sharp the line is that crosses the smaller copy of a quad, if any does; -1 for other faces.
+    double quadSharpness(int face) const {
+        if (face < 0 || _mesh.faceOrigins[face].face < 0) {
+            return -1;
+        }
+        std::size_t size = _mesh.faces[face].vertices.size();
+        if (!_mesh.faces[face].isHalf) {
+            return size == 4 ? 0 : -1;
+        }
+        Edge const &line = _mesh.edges[_mesh.faces[face].edges[0]];
+        if (line.sides.size() == 1) {
+            return -1;
+        }
+        size = _mesh.faces[line.sides[0].face].vertices.size() +
+               _mesh.faces[line.sides[1].face].vertices.size() - 2;
+        return size == 4 ? double(line.sharpness) : -1;
     }
 
     TaggedMesh const &_mesh;
