@@ -212,8 +212,8 @@ bool TopologyLevel::DoesVertexFVarTopologyMatch(Index v, int channel) const {
     ConstLocalIndexArray const locals = GetVertexFaceLocalIndices(v);
     ConstIndexArray const edges = GetVertexEdges(v);
     auto isSplitHere = [&](int i) {
-        bool const onDiagonal = locals[i] == kDiagonalStart ||
-                                locals[i] == _level->GetDiagonalEnd(faces[i]);
+        bool const onDiagonal =
+            locals[i] == kDiagonalStart || locals[i] == _level->GetDiagonalEnd(faces[i]);
         return onDiagonal && IsFaceFVarSplit(faces[i], channel);
     };
     for (int i = 0; i < faces.size(); ++i) {

@@ -61,7 +61,8 @@ std::vector<FacePart> findChildFaces(Refinement const &refinement,
         for (int local = 0; local < parent.GetFaceSize(pPart.face); ++local) {
             Index const pEdge = parent.faceEdges[first + local];
             Index const eFace = refinement.GetEdgeChildFace(pEdge);
-            if (eFace != Far::INDEX_INVALID && (pPart.halves >> parent.GetHalfOfFaceEdge(pPart.face, local) & 1u) != 0) {
+            if (eFace != Far::INDEX_INVALID &&
+                (pPart.halves >> parent.GetHalfOfFaceEdge(pPart.face, local) & 1u) != 0) {
                 bool const isFirst = parent.edgeFaces[pEdge][0] == pPart.face &&
                                      parent.edgeFaceLocals[pEdge][0] == local;
                 if (HasHalves(refinement.child->GetFaceSize(eFace))) {
@@ -174,8 +175,7 @@ std::vector<Index> FindVerticesOfFaces(Hierarchy const &hierarchy, int level, in
             }
         } else {
             appendPart(verts, fvarLevel.values->GetFaceVertices(fvarLevel.valueFaces[part.face]),
-                       mesh.GetDiagonalEnd(part.face),
-                       part.halves);
+                       mesh.GetDiagonalEnd(part.face), part.halves);
         }
     }
     SortUnique(verts, level == 0 ? values.numValues : fvarLevel.values->numVertices);

@@ -30,9 +30,9 @@ struct FVarLevel {
     }
 
     struct SplitFace {
-        Index face;          ///< of the mesh
-        Index valueFaces[2]; ///< its halves in the value mesh
-        int end;             ///< the corner where the seam ends
+        Index face;                      ///< of the mesh
+        Index valueFaces[2];             ///< its halves in the value mesh
+        int end;                         ///< the corner where the seam ends
         std::vector<Index> cornerValues; ///< by corner; of the first half on the seam
     };
     SplitFace const *FindSplitFace(Index face) const {

@@ -266,9 +266,7 @@ struct Level {
     }
     bool HasFaceHalves(Index f) const { return HasHalves(GetFaceSize(f)) || FindCrossedFace(f); }
     /// The half that edge \p local of a face belongs to, if it has halves.
-    int GetHalfOfFaceEdge(Index f, int local) const {
-        return local < GetDiagonalEnd(f) ? 1 : 0;
-    }
+    int GetHalfOfFaceEdge(Index f, int local) const { return local < GetDiagonalEnd(f) ? 1 : 0; }
     /// @}
     float GetDiagonalSharpness(Index f) const {
         return diagonalSharpness.empty() ? 0 : diagonalSharpness[f];
@@ -440,7 +438,8 @@ struct Level {
     // Tags; each array is empty in a level that has none of its kind.
     Buffer<float> edgeSharpness;     ///< by edge, of interior ones
     Buffer<float> diagonalSharpness; ///< by face
-    std::vector<CrossedFace> crossedFaces; ///< ascending; the same at all levels behind a truncation
+    std::vector<CrossedFace>
+        crossedFaces;                ///< ascending; the same at all levels behind a truncation
     Buffer<float> vertSharpness;     ///< of the vertices of level 0, the only ones that have any
     Buffer<unsigned char> faceHoles; ///< by face: bit h is set when half h lies in holes
     std::vector<Index> nonManifoldVerts; ///< ascending

@@ -80,11 +80,12 @@ struct Refinement {
         }
         if (cCell.face >= child->numFaces - child->numVFaces) {
             bool const isCrossed = cCell.half == 1 && child->FindCrossedFace(cCell.face);
-            Index const corner = isCrossed ? GetFaceFirstParentCorner(cCell.face)
-                                           : GetFaceParentCorner(cCell.face);
+            Index const corner =
+                isCrossed ? GetFaceFirstParentCorner(cCell.face) : GetFaceParentCorner(cCell.face);
             Index const face = parent->FindFaceOfCorner(corner);
             Index const local = corner - parent->faceFirstCorner[face];
-            bool const isBesideHalf1 = kDiagonalStart < local && local < parent->GetDiagonalEnd(face);
+            bool const isBesideHalf1 =
+                kDiagonalStart < local && local < parent->GetDiagonalEnd(face);
             return {face, isBesideHalf1 ? 1 : 0};
         }
         Index const edge = GetEFaceParent(cCell.face);

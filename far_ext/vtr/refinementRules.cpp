@@ -569,8 +569,9 @@ void RefinementRules::DenseRuleMaker::addOneFaceHalf(Sectors sectors, std::vecto
         getHalfFaceWeights(kTrapezoid).data() + std::ptrdiff_t(place) * kTrapezoid;
     for (int j = 0; j < kTrapezoid; ++j) {
         double const plain = weights[places[j]];
-        row[std::size_t(half[std::size_t(places[j])])] += beside * (kOneFaceMask.atHalf[j] - plain) +
-                                             farFrom * (kOneFaceMask.farInHalf[j] - plain);
+        row[std::size_t(half[std::size_t(places[j])])] +=
+            beside * (kOneFaceMask.atHalf[j] - plain) +
+            farFrom * (kOneFaceMask.farInHalf[j] - plain);
     }
 }
 

@@ -196,8 +196,7 @@ TruncationRefiner::TruncationRefiner(Level const &parent, EndCuts cuts, TagOptio
     _sizes.corners = 2 * std::int64_t(_parent.numCorners) + vertices.corners;
     // The middle of a boundary, and a spoke at each end; but for two spokes where it passes a vertex.
     _sizes.freeBoundaries = 3 * std::int64_t(_parent.numFreeBoundaries);
-    _sizes.sharpBoundariesA =
-        3 * std::int64_t(_parent.numSharpBoundariesA) - 2 * vertices.edges;
+    _sizes.sharpBoundariesA = 3 * std::int64_t(_parent.numSharpBoundariesA) - 2 * vertices.edges;
     _sizes.sharpBoundariesB = vertices.edges;
 }
 
@@ -327,8 +326,7 @@ private:
             ChildCounts const &before = _refiner._edgeCounts[std::size_t(begin / kParallelRange)];
             Index cEdge = _p.numCorners + _p.numEdges + Index(before.edges);
             for (std::size_t i = 2 * std::size_t(begin); i < 2 * std::size_t(end); ++i) {
-                _spokes[i] =
-                    _refiner._cuts[i] == EndCut::Cut ? cEdge++ : Far::INDEX_INVALID;
+                _spokes[i] = _refiner._cuts[i] == EndCut::Cut ? cEdge++ : Far::INDEX_INVALID;
             }
         });
     }

@@ -27,9 +27,10 @@ struct VFace {
     VertexFan fan;
     Far::Index begin; ///< position in Level::vertFaces
     Far::Index count;
-    bool hasVVertex; ///< in the polygon too
+    bool hasVVertex;     ///< in the polygon too
     bool isHalf = false; ///< a half face, along whose long edge a border passes the vertex
-    int diagonalEnd = 0; ///< of a face that a crease which passes the vertex crosses: the faces before it; else 0
+    int diagonalEnd =
+        0; ///< of a face that a crease which passes the vertex crosses: the faces before it; else 0
 
     /// The position of its face \p i.
     Far::Index GetPosition(Far::Index i) const { return fan.Advance(begin, i); }

@@ -28,6 +28,7 @@ using FarExt::FaceMask;
 using FarExt::FirstStep;
 using FarExt::HexSchemeOptions;
 using FarExt::SchemeType;
+namespace Far = OpenSubdiv::Far;
 namespace Sdc = OpenSubdiv::Sdc;
 
 constexpr int kDepth = 4; ///< the neighbourhood of the vertex is regular from there on
@@ -84,8 +85,11 @@ int findFirstFace(FarExt::TopologyLevel const &level, std::vector<std::array<dou
     return result;
 }
 
-/// The vertices around one in an order that the faces tell: of the faces up to two edges away from its own.
-std::vector<int> walk(FarExt::TopologyLevel const &level, int vertex, int firstFace) {
+/// \brief The vertices around a center in an order that the faces tell: of the faces up to two edges away from its own.
+///
+/// \param local  where the first face begins
+std::vector<int> walk(FarExt::TopologyLevel const &level, Far::ConstIndexArray own, int firstFace,
+                      int local) {
     constexpr int kNumRings = 2;
     struct Step {
         int face;
@@ -95,24 +99,23 @@ std::vector<int> walk(FarExt::TopologyLevel const &level, int vertex, int firstF
     std::vector<int> vertices;
     std::set<int> known;
     std::set<int> seen{firstFace};
-    std::deque<Step> steps{{firstFace, level.GetFaceVertices(firstFace).FindIndex(vertex), 0}};
-    auto const ofVertex = level.GetVertexFaces(vertex);
+    std::deque<Step> steps{{firstFace, local, 0}};
     for (; !steps.empty(); steps.pop_front()) {
         Step const step = steps.front();
         int const size = level.GetFaceVertices(step.face).size();
         for (int i = 0; i < size; ++i) {
-            int const local = (step.local + i) % size;
-            int const corner = level.GetFaceVertices(step.face)[local];
+            int const place = (step.local + i) % size;
+            int const corner = level.GetFaceVertices(step.face)[place];
             if (known.insert(corner).second) {
                 vertices.push_back(corner);
             }
-            int const edge = level.GetFaceEdges(step.face)[local];
+            int const edge = level.GetFaceEdges(step.face)[place];
             auto const sides = level.GetEdgeFaces(edge);
             if (sides.size() != 2) {
                 continue;
             }
             int const side = sides[0] == step.face ? 1 : 0;
-            int const ring = ofVertex.FindIndex(sides[side]) >= 0 ? 0 : step.ring + 1;
+            int const ring = own.FindIndex(sides[side]) >= 0 ? 0 : step.ring + 1;
             if (ring <= kNumRings && seen.insert(sides[side]).second) {
                 steps.push_back({sides[side], level.GetEdgeFaceLocalIndices(edge)[side], ring});
             }
@@ -142,8 +145,9 @@ struct Point {
     std::array<double, 2> at = {0, 0};
 };
 
-/// \brief The moduli of the eigenvalues of a step around vertex 0 of a shape, descending.  The masks of two steps
-/// alternate beside lines: they are square roots of those of both.
+/// \brief The moduli of the eigenvalues of a step around vertex 0 of a shape, or around the face that a truncation made
+/// of it where it was not kept, descending.  The masks of two steps alternate beside lines: they are square roots of
+/// those of both.
 std::vector<double> findEigenvalues(Shape const &shape, HexSchemeOptions const &scheme) {
     Sdc::Options options;
     options.SetVtxBoundaryInterpolation(Sdc::Options::VTX_BOUNDARY_EDGE_ONLY);
@@ -159,6 +163,13 @@ std::vector<double> findEigenvalues(Shape const &shape, HexSchemeOptions const &
     std::vector<Point> points(std::size_t(shape.GetNumVertices()));
     for (std::size_t i = 0; i < points.size(); ++i) {
         points[i].at = {shape.positions[3 * i], shape.positions[3 * i + 1]};
+    }
+    FarExt::TopologyLevel const &first = refiner->GetLevel(1);
+    int center = -1; // a face that is made of vertex 0, which then is not there
+    for (int f = 0; f < first.GetNumFaces(); ++f) {
+        if (refiner->GetLevel(0).GetVertexChildVertex(0) < 0 && first.GetFaceParentVertex(f) == 0) {
+            center = f;
+        }
     }
     std::vector<int> walks[2];
     std::vector<Combination> values;
@@ -180,7 +191,14 @@ std::vector<double> findEigenvalues(Shape const &shape, HexSchemeOptions const &
             for (Point const &point : points) {
                 at.push_back({point.at[0] - origin[0], point.at[1] - origin[1]});
             }
-            walks[depth == kDepth ? 0 : 1] = walk(level, 0, findFirstFace(level, at, 0));
+            std::vector<int> &found = walks[depth == kDepth ? 0 : 1];
+            if (center >= 0) {
+                found = walk(level, {&center, 1}, center, 0);
+            } else {
+                int const face = findFirstFace(level, at, 0);
+                int const local = level.GetFaceVertices(face).FindIndex(0);
+                found = walk(level, level.GetVertexFaces(0), face, local);
+            }
         }
         if (depth == kDepth) {
             values.resize(std::size_t(level.GetNumVertices()));
@@ -257,13 +275,39 @@ TEST(LineSpectrum, SectorsOfBorders) {
                       {0.5, 0.36507, 0.30619, 0.125});
 }
 
-// A truncation leaves one face to each vertex of the mesh on a border.
+// A truncation makes half a polygon of a vertex on a border.  Behind 1/2 along the border and across it nothing is above
+// 1/4, so that curvature is bounded.
 TEST(LineSpectrum, SectorsOfTruncatedBorders) {
-    for (int numFaces : {2, 3, 6}) {
-        SCOPED_TRACE(numFaces);
-        expectEigenvalues(makeFan(numFaces, 3, 0.5),
+    for (Row const &row :
+         {Row{1, {0.5, 0.5, 0.25, 0.2496, 0.1127}}, Row{2, {0.5, 0.5, 0.25, 0.25, 0.1991}},
+          Row{3, {0.5, 0.5, 0.25, 0.25, 0.25, 0.2257}},
+          Row{4, {0.5, 0.5, 0.25, 0.25, 0.25, 0.2360}},
+          Row{5, {0.5, 0.5, 0.25, 0.25, 0.25, 0.2409}},
+          Row{6, {0.5, 0.5, 0.25, 0.25, 0.25, 0.2437}},
+          Row{8, {0.5, 0.5, 0.25, 0.25, 0.25, 0.2464}},
+          Row{64, {0.5, 0.5, 0.25, 0.25, 0.25, 0.2499}}}) {
+        SCOPED_TRACE(row.numFaces);
+        expectEigenvalues(makeFan(row.numFaces, 3, 0.5),
                           {FaceMask::Smooth, SchemeType::Hexagonal, FirstStep::Truncate},
-                          {0.5, 0.5, 0.25, 0.2496, 0.1127});
+                          row.values);
+    }
+}
+
+// The two sides of a crease are two borders, which have the values along it in common.
+TEST(LineSpectrum, SectorsOfTruncatedCreases) {
+    for (int numFaces : {2, 3, 5}) {
+        SCOPED_TRACE(numFaces);
+        Shape shape = makeFan(3 + numFaces, 3, 1);
+        shape.creaseVertexPairs = {0, 1, 0, 1 + numFaces};
+        shape.creaseSharpness = {10, 10};
+        std::vector<double> expected{0.5, 0.5, 0.5, 0.25, 0.25, 0.25, 0.25, 0.2409, 0.2257};
+        if (numFaces == 2) {
+            expected = {0.5, 0.5, 0.5, 0.25, 0.25, 0.25, 0.2257, 0.1991};
+        } else if (numFaces == 3) {
+            expected = {0.5, 0.5, 0.5, 0.25, 0.25, 0.25, 0.25, 0.2257, 0.2257};
+        }
+        expectEigenvalues(shape, {FaceMask::Smooth, SchemeType::Hexagonal, FirstStep::Truncate},
+                          expected);
     }
 }
 

@@ -68,8 +68,9 @@ std::vector<Piece> findPieces(TopologyLevel const &level) {
         bool const isSplit = level.IsFaceBaseSplit(face);
         for (int half = 0; half < (isSplit ? 2 : 1); ++half) {
             Piece piece{level.GetFaceBaseFace(face, half), {}, {}};
-            for (int i = 0; i < (isSplit ? 4 : size); ++i) {
-                piece.corners.push_back(isSplit ? FarExt::kHexagonHalves[half][i] : i);
+            int const end = level.GetFaceDiagonalEnd(face);
+            for (int i = 0; i < (isSplit ? FarExt::GetHalfSize(half, size, end) : size); ++i) {
+                piece.corners.push_back(isSplit ? FarExt::GetPlaceInHalves(half, i, end) : i);
             }
             piece.polygon.resize(piece.corners.size());
             if (!level.GetFaceBaseCoords(face, half, piece.polygon[0].data())) {

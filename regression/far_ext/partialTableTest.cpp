@@ -117,8 +117,9 @@ std::vector<int> findVertices(TopologyLevel const &level, std::vector<int> const
                 add(all);
                 continue;
             }
-            for (int corner : FarExt::kHexagonHalves[half]) {
-                verts.insert(all[corner]);
+            int const end = level.GetFaceDiagonalEnd(face);
+            for (int i = 0; i < FarExt::GetHalfSize(half, all.size(), end); ++i) {
+                verts.insert(all[FarExt::GetPlaceInHalves(half, i, end)]);
             }
         }
     }

@@ -393,7 +393,7 @@ bool TaggedMatch::matchFaces(int level) {
         for (int i = 0; i < int(face.holes.size()) && _channel < 0; ++i) {
             int const half = place.corners[i] < library.GetFaceDiagonalEnd(place.face) ? 1 : 0;
             bool const isHole = isWhole && !face.isHalf ? library.IsFaceHole(place.face, half)
-                                : isWhole            ? library.IsFaceHole(place.face)
+                                : isWhole               ? library.IsFaceHole(place.face)
                                           : library.IsFaceHole(place.face, GetHalf(place));
             if (isHole != face.holes[i]) {
                 return fail(level, name + " is a hole elsewhere");

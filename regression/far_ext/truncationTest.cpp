@@ -211,6 +211,129 @@ TEST(Truncation, HasDocumentedNumbering) {
     });
 }
 
+namespace {
+
+/// Triangles around vertex 0, of which two spokes are a crease, \p before faces apart; and a second ring of them, so
+/// that only the outermost vertices are on a border.
+Shape makeCreasedDisc(int before, int behind, float sharpness) {
+    Shape shape;
+    int const n = before + behind;
+    shape.positions = {0, 0, 0};
+    for (int ring : {1, 2}) {
+        for (int i = 0; i < n; ++i) {
+            double const angle = 2 * std::acos(-1.0) * (i + 0.5 * ring) / n;
+            shape.positions.insert(shape.positions.end(), {ring * std::cos(angle),
+                                                           ring * std::sin(angle), 0.1 * ring * i});
+        }
+    }
+    for (int i = 0; i < n; ++i) {
+        int const a = 1 + i;
+        int const b = 1 + (i + 1) % n;
+        shape.faceSizes.insert(shape.faceSizes.end(), {3, 3, 3});
+        shape.faceVertices.insert(shape.faceVertices.end(),
+                                  {0, a, b, a, a + n, b, b, a + n, b + n});
+    }
+    shape.creaseVertexPairs = {0, 1, 0, 1 + before};
+    shape.creaseSharpness = {sharpness, sharpness};
+    return shape;
+}
+
+} // namespace
+
+// Where a crease passes a vertex, its polygon is crossed from one of the edges to the other.
+TEST(Truncation, CreasesPassVertices) {
+    for (auto [before, behind] : {std::pair(2, 2), {3, 3}, {2, 4}, {5, 3}}) {
+        for (float sharpness : {10.0f, 2.5f, 0.5f}) {
+            SCOPED_TRACE(testing::Message() << before << " and " << behind << ", " << sharpness);
+            Shape const shape = makeCreasedDisc(before, behind, sharpness);
+            auto const refiner = createRefiner(shape, ReferenceMask::Smooth, 2);
+            TopologyLevel const &base = refiner->GetLevel(0);
+            ASSERT_EQ(base.GetVertexChildVertex(0), Far::INDEX_INVALID);
+            TopologyLevel const &level = refiner->GetLevel(1);
+            int face = 0;
+            while (level.GetFaceParentVertex(face) != 0) {
+                ++face;
+            }
+            for (int depth : {1, 2}) { // it keeps its index
+                TopologyLevel const &topology = refiner->GetLevel(depth);
+                int const end = topology.GetFaceDiagonalEnd(face);
+                ASSERT_EQ(topology.GetFaceVertices(face).size(), before + behind);
+                ASSERT_TRUE(end == before || end == behind);
+                float const left = sharpness == 10 ? 10 : std::max(0.0f, sharpness - float(depth));
+                EXPECT_EQ(topology.GetFaceDiagonalSharpness(face), left);
+                EXPECT_FALSE(topology.IsFaceHalf(face));
+                EXPECT_TRUE(topology.IsFaceBaseSplit(face));
+                // Half 1 is behind vertex 0 and lies in the faces that begin there.
+                int const faces[] = {topology.GetFaceBaseFace(face, 0),
+                                     topology.GetFaceBaseFace(face, 1)};
+                bool const isFirst = end == before && (before != behind || faces[1] / 3 < before);
+                EXPECT_EQ(faces[0] / 3 < before, !isFirst);
+                EXPECT_EQ(faces[1] / 3 < before, isFirst);
+            }
+            auto const verts = level.GetFaceVertices(face);
+            int const end = level.GetFaceDiagonalEnd(face);
+            auto const values = InterpolateLevels(*refiner, GetPositions(shape));
+            for (int local : {0, end}) {
+                EXPECT_EQ(level.GetVertexRule(verts[local]),
+                          sharpness == 0.5f ? Sdc::Crease::RULE_SMOOTH : Sdc::Crease::RULE_CREASE);
+                if (sharpness < 1) {
+                    continue;
+                }
+                double const distances[] = {
+                    (values[1].row(verts[local]) - values[0].row(1) / 3).norm(),
+                    (values[1].row(verts[local]) - values[0].row(1 + before) / 3).norm()};
+                EXPECT_LT(std::min(distances[0], distances[1]), 1e-15);
+            }
+        }
+    }
+}
+
+// One face on a side, another sharp edge, a sharp vertex, a seam alone, or a value that stays: the vertex is kept.
+TEST(Truncation, KeepsVerticesOfOtherLines) {
+    auto const isKept = [](Shape const &shape) {
+        auto const refiner = createRefiner(shape, ReferenceMask::Smooth, 1);
+        return refiner->GetLevel(0).GetVertexChildVertex(0) >= 0;
+    };
+    Shape const passed = makeCreasedDisc(3, 3, 10);
+    EXPECT_FALSE(isKept(passed));
+    EXPECT_TRUE(isKept(makeCreasedDisc(1, 4, 10)));
+    EXPECT_FALSE(isKept(makeCreasedDisc(64, 2, 10)));
+    EXPECT_TRUE(isKept(makeCreasedDisc(65, 2, 10)));
+    Shape corner = passed;
+    corner.creaseVertexPairs.insert(corner.creaseVertexPairs.end(), {0, 2});
+    corner.creaseSharpness.push_back(10);
+    EXPECT_TRUE(isKept(corner));
+    Shape sharp = passed;
+    sharp.cornerVertices = {0};
+    sharp.cornerSharpness = {1};
+    EXPECT_TRUE(isKept(sharp));
+    Shape hole = passed;
+    hole.holeFaces = {3};
+    EXPECT_TRUE(isKept(hole));
+    // A seam along both edges of the crease, or along one of them.
+    for (bool isWhole : {true, false}) {
+        Shape seam = passed;
+        FVarChannel channel;
+        channel.valueIndices = seam.faceVertices;
+        int numValues = seam.GetNumVertices();
+        for (int v : {0, 1, 4}) { // other values on one side of the line
+            for (int f = 0; f < seam.GetNumFaces(); ++f) {
+                for (int i = 3 * f; i < 3 * f + 3; ++i) {
+                    bool const isBefore = f / 3 < 3;
+                    bool const isOther = isWhole ? isBefore : isBefore && v == 1;
+                    if (seam.faceVertices[std::size_t(i)] == v && isOther) {
+                        channel.valueIndices[std::size_t(i)] = numValues;
+                    }
+                }
+            }
+            ++numValues;
+        }
+        channel.values.assign(2 * std::size_t(numValues), 0);
+        seam.fvarChannels = {channel};
+        EXPECT_EQ(isKept(seam), !isWhole);
+    }
+}
+
 TEST(Truncation, MakesHexagonsOfTriangles) {
     Shape const icosahedron = MakeIcosahedron();
     auto const refiner = createRefiner(icosahedron, ReferenceMask::Smooth, 3);

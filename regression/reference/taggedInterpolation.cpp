@@ -369,9 +369,9 @@ private:
             share = out.GetShare();
         }
         bool const isQuad = hasIrregularRules() && hexagon.size() == 4;
-        Point const smooth =
-            isQuad ? NewPointOfQuad(_mesh.numHexagonalSteps, hexagon, places[place])
-                   : mixByPath(byPath, share, maskPoint(hexagon, places[place]));
+        Point const smooth = isQuad
+                                 ? NewPointOfQuad(_mesh.numHexagonalSteps, hexagon, places[place])
+                                 : mixByPath(byPath, share, maskPoint(hexagon, places[place]));
         double const sharp = _isVarying ? 0 : std::min(1.0, double(line.sharpness));
         Point const plain = sharp * halfPoint(face, corner.place) + towards * vertex +
                             (1 - sharp - towards) * smooth + fromOneFace(face, corner);
@@ -427,8 +427,8 @@ private:
         Point slow = Point::Zero(whole.size()); // the waves of less
         for (int j = 0; j < 2 * count; ++j) {
             double const t = std::acos(-1.0) * (j - (count + place - 1)) / count;
-            slow += (1 + 2 * std::cos(t) + 2 * std::cos(2 * t)) / (2 * count) *
-                    polygon[std::size_t(j)];
+            slow +=
+                (1 + 2 * std::cos(t) + 2 * std::cos(2 * t)) / (2 * count) * polygon[std::size_t(j)];
         }
         return whole + (1 / 6.0 - 1 / 8.0) * (polygon[std::size_t(count + place - 1)] - slow);
     }

@@ -393,7 +393,8 @@ void Refinement::mergeSmoothHalves() {
         int const first = edge.sides[0].face;
         int const second = edge.sides[1].face;
         // Vertex 0 of the first half, then what the second one has beside the line, and so on.
-        auto const merge = [&](auto const &a, auto const &b, auto const &atStart, auto const &atEnd) {
+        auto const merge = [&](auto const &a, auto const &b, auto const &atStart,
+                               auto const &atEnd) {
             auto result = a;
             result.assign(1, atStart);
             result.insert(result.end(), b.begin() + 2, b.end());

@@ -60,8 +60,7 @@ ReferenceCuts FindCuts(TaggedMesh const &mesh, std::vector<TaggedMesh> const &va
             }
         }
         // A line goes through a vertex with two faces and more on each side where nothing else is.
-        bool isPassed =
-            fans.size() == 1 && !isSharp && GetRule(mesh, v) == TaggedRule::Crease;
+        bool isPassed = fans.size() == 1 && !isSharp && GetRule(mesh, v) == TaggedRule::Crease;
         if (isPassed) {
             std::vector<Side> const &corners = fans[0].corners;
             std::vector<int> ends;
@@ -84,9 +83,8 @@ ReferenceCuts FindCuts(TaggedMesh const &mesh, std::vector<TaggedMesh> const &va
                 isPassed = isPassed && 2 <= before && before <= 64 && 2 <= size - before &&
                            size - before <= 64;
                 for (TaggedMesh const &valueMesh : values) {
-                    bool const isSeam[] = {
-                        edgeOf(valueMesh, corners[ends[0]]).sides.size() == 1,
-                        edgeOf(valueMesh, corners[ends[1]]).sides.size() == 1};
+                    bool const isSeam[] = {edgeOf(valueMesh, corners[ends[0]]).sides.size() == 1,
+                                           edgeOf(valueMesh, corners[ends[1]]).sides.size() == 1};
                     isPassed = isPassed && isSeam[0] == isSeam[1];
                 }
             }
