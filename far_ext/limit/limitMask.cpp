@@ -163,8 +163,11 @@ private:
         Index const first = level.faceFirstCorner[face];
         std::vector<Index> verts;
         if (item.half >= 0) {
-            for (int corner : kHexagonHalves[item.half]) {
-                verts.push_back(level.faceVerts[first + corner]);
+            int const diagonalEnd = level.GetDiagonalEnd(face);
+            int const numOfHalf = GetHalfSize(item.half, level.GetFaceSize(face), diagonalEnd);
+            for (int i = 0; i < numOfHalf; ++i) {
+                verts.push_back(
+                    level.faceVerts[first + GetPlaceInHalves(item.half, i, diagonalEnd)]);
             }
         } else {
             verts.assign(level.faceVerts.begin() + first,
@@ -611,14 +614,20 @@ namespace {
 
 // Both have the diagonal, or the B edge, from V to W, then Q and P.  The mean of Q and P approaches
 // that of V and W, so that the difference of these means is the tangent across; see mask.h.
-void addHalfTangents(int const corners[4], LimitMask &mask) {
+void addHalfTangents(std::vector<int> const &corners, LimitMask &mask) {
     std::size_t const size = mask.weights.size();
     LimitMask::Tangents tangents = {Vector(size, 0.0), Vector(size, 0.0)};
-    double const across = 1 / std::sqrt(3.0); // half a regular hexagon with edges of length 1
     tangents.du[corners[0]] = -0.5;
     tangents.du[corners[1]] = 0.5;
-    tangents.dv[corners[0]] = tangents.dv[corners[1]] = -across;
-    tangents.dv[corners[2]] = tangents.dv[corners[3]] = across;
+    // Half a regular polygon in a circle of radius 1.
+    auto const numEdges = int(corners.size()) - 1;
+    long double sum = 0;
+    for (int i = 1; i < numEdges; ++i) {
+        long double const across = 2.0L / numEdges * std::sin(kLongPi * i / numEdges);
+        tangents.dv[corners[std::size_t(i) + 1]] = double(across);
+        sum += across;
+    }
+    tangents.dv[corners[0]] = tangents.dv[corners[1]] = -double(sum / 2);
     mask.sides.push_back(std::move(tangents));
 }
 
@@ -644,14 +653,21 @@ LimitMask FaceLimitMaskFinder::Find(Index face) const {
     }
     LimitMask mask;
     if (isHalf) {
-        mask.weights = {0.5, 0.5, 0, 0};
-        int const corners[4] = {0, 1, 2, 3};
+        mask.weights.assign(size, 0.0);
+        mask.weights[0] = mask.weights[1] = 0.5;
+        std::vector<int> corners(std::size_t(size), 0);
+        std::iota(corners.begin(), corners.end(), 0);
         addHalfTangents(corners, mask);
     } else {
+        int const diagonalEnd = _level.GetDiagonalEnd(face);
         mask.weights.assign(size, 0.0);
-        mask.weights[kDiagonalStart] = mask.weights[kDiagonalEnd] = 0.5;
-        for (auto const &half : kHexagonHalves) {
-            addHalfTangents(half, mask);
+        mask.weights[kDiagonalStart] = mask.weights[diagonalEnd] = 0.5;
+        for (int half : {0, 1}) {
+            std::vector<int> corners;
+            for (int i = 0; i < GetHalfSize(half, size, diagonalEnd); ++i) {
+                corners.push_back(GetPlaceInHalves(half, i, diagonalEnd));
+            }
+            addHalfTangents(corners, mask);
         }
     }
     // The F-face has no vertex with one face.
@@ -680,6 +696,9 @@ LimitMask FaceLimitMaskFinder::findAfterStep(Index face) const {
     child.diagonalSharpness[0] =
         Crease(_sdcOptions).SubdivideUniformSharpness(_level.GetDiagonalSharpness(face));
 
+    if (CrossedFace const *const crossed = _level.FindCrossedFace(face)) {
+        child.crossedFaces = {{0, crossed->end}};
+    }
     child.numHexagonalSteps = _level.numHexagonalSteps + 1;
     for (int i = 0; i < size && !isQuad; ++i) {
         if (QuadCorner const *const quad = _level.FindQuadCorner(first + i)) {

@@ -277,6 +277,10 @@ void LimitPatchGatherer::addFace(Index face, int local, bool isRing, LimitPatch 
             }
         }
     }
+    if (CrossedFace const *const crossed = _level.FindCrossedFace(face);
+        crossed && Crease::IsSharp(diagonal)) {
+        patch.crossedFaces.push_back({Index(patch.faceSizes.size()), crossed->end});
+    }
     patch.faceSizes.push_back(size);
     patch.diagonalSharpness.push_back(diagonal);
 }
@@ -362,7 +366,11 @@ void LimitPatchGatherer::addSharpEnds(LimitPatch &patch) {
                     patch.edgeSharpness[first + i]);
         }
         if (float const sharpness = patch.diagonalSharpness[face]; Crease::IsSharp(sharpness)) {
-            addEnds(patch.faceVerts[first + kDiagonalStart], patch.faceVerts[first + kDiagonalEnd],
+            int end = kDiagonalEnd;
+            for (CrossedFace const &crossed : patch.crossedFaces) {
+                end = crossed.face == Index(face) ? crossed.end : end;
+            }
+            addEnds(patch.faceVerts[first + kDiagonalStart], patch.faceVerts[first + end],
                     sharpness);
         }
         first += size;
@@ -437,6 +445,10 @@ void LimitPatchGatherer::AddSignature(LimitPatch &patch) {
     add(patch.otherCorners);
     addIfAny(patch.edgeSharpness);
     addIfAny(patch.diagonalSharpness);
+    for (CrossedFace const &crossed : patch.crossedFaces) { // which have a diagonal
+        signature.insert(signature.end(), {crossed.face, crossed.end});
+    }
+    signature.push_back(int(patch.crossedFaces.size()));
     addIfAny(patch.vertSharpness);
     add(patch.nonManifoldVerts);
     add(patch.lineCorners);
@@ -609,6 +621,7 @@ void BuildPatchLevel(LimitPatch const &patch, Level &level) {
     BuildBaseLevel({edges.data(), Index(edges.size())}, level);
     fillTags(edgeSharpness, level.edgeSharpness);
     fillTags(patch.diagonalSharpness, level.diagonalSharpness);
+    level.crossedFaces = patch.crossedFaces;
     fillTags(patch.vertSharpness, level.vertSharpness);
     level.nonManifoldVerts = patch.nonManifoldVerts;
     level.lineEdges.clear();

@@ -36,6 +36,7 @@ struct LimitPatch {
     std::vector<Index> otherCorners;  ///< by corner, across the edge from it; or a BoundaryKind
     std::vector<float> edgeSharpness; ///< by corner, of the edge from it; the same on both sides
     std::vector<float> diagonalSharpness;    ///< by face
+    std::vector<CrossedFace> crossedFaces;   ///< ascending; those with a sharp diagonal
     std::vector<float> vertSharpness;        ///< by vertex
     std::vector<Index> nonManifoldVerts;     ///< ascending
     std::vector<Index> lineCorners;          ///< ascending; those whose edge has a line
