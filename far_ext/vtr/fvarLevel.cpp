@@ -223,13 +223,14 @@ void RefineFVarLevel(Refinement const &mesh, Refinement const &values, FVarLevel
     cLevel.splitFaces.clear();
 
     auto const addSplitFace = [&](Index cFace, Index first, Index second) {
-        int const end = mesh.child->GetDiagonalEnd(cFace);
+        Far::ConstIndexArray const halves[] = {cValues.GetFaceVertices(first),
+                                               cValues.GetFaceVertices(second)};
+        int const end = halves[1].size() - 1;
         FVarLevel::SplitFace split = {cFace, {first, second}, end, {}};
-        split.cornerValues.resize(std::size_t(mesh.child->GetFaceSize(cFace)));
+        split.cornerValues.resize(std::size_t(halves[0].size() + halves[1].size() - 2));
         for (int half = 1; half >= 0; --half) {
-            Far::ConstIndexArray const ofHalf = cValues.GetFaceVertices(split.valueFaces[half]);
-            for (int i = 0; i < ofHalf.size(); ++i) {
-                split.cornerValues[std::size_t(GetPlaceInHalves(half, i, end))] = ofHalf[i];
+            for (int i = 0; i < halves[half].size(); ++i) {
+                split.cornerValues[std::size_t(GetPlaceInHalves(half, i, end))] = halves[half][i];
             }
         }
         cLevel.splitFaces.push_back(std::move(split));
