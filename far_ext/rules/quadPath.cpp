@@ -101,11 +101,7 @@ private:
     std::vector<Row> _rows;
 };
 
-} // namespace
-
-QuadFlag MakeQuadFlag(QuadVertex vertex) { return QuadFlag(1 + kNumPaths * int(vertex)); }
-
-QuadFlag AppendToQuadFlag(QuadFlag flag, int numSteps, int digit) {
+QuadFlag append(QuadFlag flag, int numSteps, int digit) {
     if (flag == 0) {
         return 0;
     }
@@ -127,14 +123,23 @@ QuadFlag AppendToQuadFlag(QuadFlag flag, int numSteps, int digit) {
     return QuadFlag(1 + (isAtVertex ? kNumEndings : 0) + ending % kDigit * kDigit + digit);
 }
 
-QuadRow FindQuadRow(int numSteps, QuadFlag out, QuadFlag in) {
+} // namespace
+
+QuadFlag MakeQuadFlag(QuadVertex vertex) { return QuadFlag(1 + kNumPaths * int(vertex)); }
+
+QuadFlags AppendToQuadFlags(QuadFlags flags, int numSteps, int outDigit, int inDigit) {
+    return {append(flags.out, numSteps, outDigit), append(flags.in, numSteps, inDigit),
+            std::max(0.0f, flags.sharpness - 1)};
+}
+
+QuadRow FindQuadRow(int numSteps, QuadFlags flags) {
     static Rows const rows;
     static constexpr QuadRow kNone = {nullptr, false, -1};
-    if (out == 0 || in == 0 || numSteps == 0) {
+    if (flags.out == 0 || flags.in == 0 || numSteps == 0) {
         return kNone;
     }
-    auto const [ofOut, pathOut] = getPath(out);
-    auto const [ofIn, pathIn] = getPath(in);
+    auto const [vertex, pathOut] = getPath(flags.out);
+    int const pathIn = getPath(flags.in).digits;
     int const path = std::min(pathOut, pathIn);
     bool const isBackwards = pathIn < pathOut;
     auto const make = [isBackwards](Rows::Row const *row) {
@@ -145,18 +150,14 @@ QuadRow FindQuadRow(int numSteps, QuadFlag out, QuadFlag in) {
         bool const isSame = pathOut / kNumEndings == pathIn / kNumEndings;
         return isSame ? make(rows.Find(kNumStepsToConstantMasks, path)) : kNone;
     }
-    if (ofOut == ofIn) {
-        // Beside other vertices, and beside their neighbors, a row is not for these.
-        bool const isBeside =
-            path == repeat(3, numSteps) || path == repeat(3, numSteps - 1) * kDigit + 1;
-        if (ofOut == int(QuadVertex::Other) && isBeside) {
-            return kNone;
-        }
-        if (Rows::Row const *const row = rows.Find(numSteps, kNumPaths * ofOut + path)) {
-            return make(row);
-        }
+    // Beside other vertices, and beside their neighbors, the rows of four quads are not for these.
+    bool const isBeside =
+        path == repeat(3, numSteps) || path == repeat(3, numSteps - 1) * kDigit + 1;
+    if (vertex == int(QuadVertex::Other) && isBeside) {
+        return kNone;
     }
-    return make(rows.Find(numSteps, path));
+    Rows::Row const *const ofVertex = rows.Find(numSteps, kNumPaths * vertex + path);
+    return make(ofVertex ? ofVertex : rows.Find(numSteps, path));
 }
 
 } // namespace OpenSubdivHex::FarExt::internal

@@ -32,8 +32,21 @@ enum class QuadVertex {
 };
 
 QuadFlag MakeQuadFlag(QuadVertex vertex);
-/// What a step makes of a flag, at a level that \p numSteps hexagonal steps made.
-QuadFlag AppendToQuadFlag(QuadFlag flag, int numSteps, int digit);
+
+/// \brief Those of a corner, with its two edges: both came from one vertex of quads.
+struct QuadFlags {
+    QuadFlag out; ///< with the edge that begins at the corner
+    QuadFlag in;  ///< with the edge that ends there
+    /// Of the sharpest there was at the vertex of the quads, less one for each step since.
+    float sharpness;
+
+    bool HasAny() const { return out != 0 || in != 0; }
+    /// Of the masks that the paths tell; others have what is left.
+    float GetShare() const { return sharpness < 1 ? 1 - sharpness : 0; }
+};
+
+/// What a step makes of flags with these digits, at a level that \p numSteps hexagonal steps made.
+QuadFlags AppendToQuadFlags(QuadFlags flags, int numSteps, int outDigit, int inDigit);
 
 /// \brief What the paths of its flags tell of a corner's F-vertex.
 struct QuadRow {
@@ -44,8 +57,8 @@ struct QuadRow {
     double vertexWeight;
 };
 
-/// Of a corner at a level that \p numSteps hexagonal steps made, with the flags of the edges that begin and end there.
-QuadRow FindQuadRow(int numSteps, QuadFlag out, QuadFlag in);
+/// Of a corner at a level that \p numSteps hexagonal steps made.
+QuadRow FindQuadRow(int numSteps, QuadFlags flags);
 
 } // namespace OpenSubdivHex::FarExt::internal
 

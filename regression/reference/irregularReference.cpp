@@ -274,6 +274,20 @@ std::string rowOfPath(QuadPath const &quadPath) {
                                                   : "";
 }
 
+} // namespace
+
+QuadPath Shorten(QuadPath const &path) {
+    std::string const row = rowOfPath(path);
+    if (path.steps.size() <= 4) {
+        return path;
+    }
+    return row.empty() ? QuadPath()
+                       : QuadPath{path.steps.substr(0, 1) + row[0] + row[0] + row.substr(2),
+                                  path.sharpness};
+}
+
+namespace {
+
 /// Of a corner; null where its paths have none.
 PathRow const *findRow(QuadPath const &out, QuadPath const &in) {
     static PathRows const rows = readPathRows();
