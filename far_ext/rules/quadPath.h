@@ -2,6 +2,8 @@
 #ifndef OPENSUBDIVHEX_FAR_EXT_RULES_QUAD_PATH_H
 #define OPENSUBDIVHEX_FAR_EXT_RULES_QUAD_PATH_H
 
+#include "far_ext/hexSchemeOptions.h"
+
 #include <cstdint>
 
 namespace OpenSubdivHex::FarExt::internal {
@@ -22,16 +24,18 @@ namespace OpenSubdivHex::FarExt::internal {
 /// begins with 3 3 ... 3, or near a quad, 0 0 ... 0; of the path the last two digits matter.
 using QuadFlag = std::uint16_t;
 
-/// \brief The vertex of quads that a flag was at, before the first step.  All faces there were quads.
-enum class QuadVertex {
-    Four, ///< inside of the mesh, with that many faces, and no edge there infinitely sharp
-    Three,
-    Five,
-    Six,
-    Other
-};
-
-QuadFlag MakeQuadFlag(QuadVertex vertex);
+/// One at a vertex that has \p numFaces faces, all of them quads, before the first step.
+OPENSUBDIVHEX_API QuadFlag MakeQuadFlag(int numFaces);
+/// The same of any vertex inside of a mesh; 0 where a face, from getFaceSize(0) on, is no quad.
+template <typename GETFACESIZE>
+QuadFlag FindQuadFlag(int numFaces, GETFACESIZE const &getFaceSize) {
+    for (int i = 0; i < numFaces; ++i) {
+        if (getFaceSize(i) != 4) {
+            return 0;
+        }
+    }
+    return MakeQuadFlag(numFaces);
+}
 
 /// \brief Those of a corner, with its two edges: both came from one vertex of quads.
 struct QuadFlags {

@@ -22,10 +22,10 @@ constexpr int kQuad = 4;
 
 QuadFlags makeBaseFlags(Level const &level, Index vert) {
     Far::ConstIndexArray const faces = level.GetVertexFaces(vert);
-    if (faces.size() == 0 || level.IsNonManifold(vert) ||
-        !std::all_of(faces.begin(), faces.end(), [&](Index face) {
-            return level.GetFaceSize(face) == kQuad && !level.IsHalfFace(face);
-        })) {
+    QuadFlag const flag = FindQuadFlag(faces.size(), [&](int i) {
+        return level.IsHalfFace(faces[i]) ? 0 : level.GetFaceSize(faces[i]);
+    });
+    if (faces.size() == 0 || flag == 0 || level.IsNonManifold(vert)) {
         return {};
     }
     Far::ConstIndexArray const edges = level.GetVertexEdges(vert);
@@ -39,12 +39,6 @@ QuadFlags makeBaseFlags(Level const &level, Index vert) {
     if (Crease::IsInfinite(sharpness)) {
         return {};
     }
-    int const numFaces = faces.size();
-    QuadFlag const flag = MakeQuadFlag(numFaces == 4   ? QuadVertex::Four
-                                       : numFaces == 3 ? QuadVertex::Three
-                                       : numFaces == 5 ? QuadVertex::Five
-                                       : numFaces == 6 ? QuadVertex::Six
-                                                       : QuadVertex::Other);
     return {flag, flag, sharpness};
 }
 
