@@ -68,6 +68,16 @@ if(OPENSUBDIVHEX_PKG_CONFIG AND UNIX)
 endif()
 set_tests_properties(consumer.install PROPERTIES FIXTURES_SETUP installed)
 set_tests_properties(consumer.build PROPERTIES FIXTURES_REQUIRED installed)
+# A program of version 1.0, by the table of new names.
+add_test(NAME consumer.migration
+  COMMAND ${CMAKE_COMMAND}
+    -D sourceDir=${PROJECT_SOURCE_DIR}
+    -D includeDir=${consumerDir}/prefix/${CMAKE_INSTALL_INCLUDEDIR}/opensubdivhex
+    -D workDir=${consumerDir}/migration
+    -D config=$<CONFIG>
+    "-D options=-G${CMAKE_GENERATOR};-DCMAKE_PREFIX_PATH=${consumerDir}/prefix\;${CMAKE_PREFIX_PATH};-DCMAKE_CXX_COMPILER=${CMAKE_CXX_COMPILER};-DCMAKE_CXX_FLAGS=${CMAKE_CXX_FLAGS};-DCMAKE_TOOLCHAIN_FILE=${CMAKE_TOOLCHAIN_FILE};-DOpenSubdiv_ROOT=${OpenSubdiv_ROOT};-DOpenSubdiv_DIR=${OpenSubdiv_DIR}"
+    -P ${PROJECT_SOURCE_DIR}/regression/consumer/migration/migration.cmake)
+set_tests_properties(consumer.migration PROPERTIES FIXTURES_REQUIRED installed)
 add_test(NAME consumer.guide
   COMMAND ${CMAKE_COMMAND} -D folder=${consumerDir}/prefix/${CMAKE_INSTALL_DOCDIR}
     -P ${PROJECT_SOURCE_DIR}/regression/guide/links.cmake)
