@@ -144,6 +144,10 @@ if(programs)
       -P ${PROJECT_SOURCE_DIR}/regression/consumer/devices.cmake)
 endif()
 
+add_test(NAME consumer.versions
+  COMMAND ${CMAKE_COMMAND} -D sourceDir=${PROJECT_SOURCE_DIR} -D version=${PROJECT_VERSION}
+    -P ${PROJECT_SOURCE_DIR}/regression/consumer/versions.cmake)
+
 # The recipe of the vcpkg port.
 if(OPENSUBDIVHEX_TOOLS AND CMAKE_INSTALL_LIBDIR STREQUAL "lib")
   add_test(NAME consumer.port
@@ -151,7 +155,6 @@ if(OPENSUBDIVHEX_TOOLS AND CMAKE_INSTALL_LIBDIR STREQUAL "lib")
       -D sourceDir=${PROJECT_SOURCE_DIR}
       -D buildDir=${PROJECT_BINARY_DIR}
       -D workDir=${consumerDir}/port
-      -D version=${PROJECT_VERSION}
       -D config=$<CONFIG>
       -D generator=${CMAKE_GENERATOR}
       -D compiler=${CMAKE_CXX_COMPILER}
