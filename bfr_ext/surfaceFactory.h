@@ -206,7 +206,7 @@ public:
     ///                a face with more than 1,024 vertices.  At a non-manifold vertex that is a corner for
     ///                ever, as a pole that faces name twice, the faces of each fan count by themselves, up to 4,096
     bool FaceHasLimitSurface(Index face, FarExt::CallStatus *status = nullptr) const;
-    /// The same but for vertices of many faces, whose limits take long to find.
+    /// As FaceHasLimitSurface(), without the test of vertices of many faces, which takes long.
     FarExt::CallStatus CheckFace(Index face) const;
     /// The parameterization of a face, which is in range.
     Parameterization GetFaceParameterization(Index face) const;

@@ -30,10 +30,10 @@ decltype(auto) ElementOf(ARRAY &array, Far::Index i) {
 } // namespace internal
 
 /// \cond  Not for users.
-/// \brief What PrimvarRefinerReal has for all types of weights: nothing for users.
+/// \brief The part of PrimvarRefinerReal that is the same for all types of weights: nothing for users.
 class OPENSUBDIVHEX_API PrimvarRefinerBase {
 protected:
-    /// What is interpolated.
+    /// The kind of data.
     enum class Data { Vertex, Varying, FaceVarying };
 
     /// The weights that make the points of a level, some points at a time.
