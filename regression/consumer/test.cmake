@@ -143,6 +143,9 @@ if(programs)
       -P ${PROJECT_SOURCE_DIR}/regression/consumer/devices.cmake)
 endif()
 
+add_test(NAME consumer.examples
+  COMMAND ${CMAKE_COMMAND} -D sourceDir=${PROJECT_SOURCE_DIR} -D opensubdivDir=${OpenSubdiv_INCLUDE_DIR}
+    -P ${PROJECT_SOURCE_DIR}/regression/consumer/examples.cmake)
 add_test(NAME consumer.versions
   COMMAND ${CMAKE_COMMAND} -D sourceDir=${PROJECT_SOURCE_DIR} -D version=${PROJECT_VERSION}
     -P ${PROJECT_SOURCE_DIR}/regression/consumer/versions.cmake)
