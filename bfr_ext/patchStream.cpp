@@ -3,7 +3,6 @@
 
 #include "cell/baseType.h"
 #include "stream/patchPlans.h"
-#include "stream/streamTypes.h"
 
 #include "far_ext/executor.h"
 #include "far_ext/stencil/interpolationMode.h"
@@ -146,7 +145,7 @@ class alignas(FarExt::internal::kCacheLine) PatchStream<REAL>::Worker {
 public:
     Worker(PatchStream const &stream, REAL const *meshPoints, PointDescriptor const &meshPointDesc,
            std::vector<Values> const &values, Sink const &sink, VertexPoints *vertexPoints)
-        : _stream(stream), _finder(stream), _factory(&stream._factory), _meshPoints(meshPoints),
+        : _stream(stream), _finder(stream), _factory(stream._factory), _meshPoints(meshPoints),
           _meshPointDesc(meshPointDesc), _values(values), _sink(sink), _vertexPoints(vertexPoints),
           _results(values.size()), _resultStarts(values.size()) {}
 
@@ -155,12 +154,6 @@ public:
     /// \param section  -1: of the face as a whole
     /// \return  false where the sink ended the stream, or a face has no surface, as status says
     bool Run(Index face, int section, CallStatus &status) {
-        if (_stream._types && _numPatches++ % kFacesOfFactory == 0) {
-            _surface.Clear();
-            _ownFactory.reset();
-            _ownFactory = _stream._types->Get();
-            _factory = _ownFactory.get();
-        }
         LevelTessellation const &tessellation = _finder.Find(face, section);
         if (!evaluatePoints(face, tessellation, status) ||
             !evaluateValues(face, tessellation, status)) {
@@ -179,13 +172,8 @@ private:
         _surface.GatherControlPoints(meshPoints, desc, _controlPoints.data(), desc.size);
     }
 
-    // Faces are kept: the next frame has them, too.
-    CallStatus initSurface(Index face, FarExt::Interpolation interpolation, int channel) {
-        return _factory->TryInit(face, interpolation, channel, _surface, !_ownFactory);
-    }
-
     bool evaluatePoints(Index face, LevelTessellation const &tessellation, CallStatus &status) {
-        status = initSurface(face, FarExt::Interpolation::Vertex, -1);
+        status = _factory.TryInit(face, FarExt::Interpolation::Vertex, -1, _surface);
         if (!status.IsOk()) {
             return false;
         }
@@ -193,7 +181,7 @@ private:
         std::size_t const size = std::size_t(tessellation.GetNumCoords()) * std::size_t(desc.size);
         _points.resize(size);
         bool const areVerticesKept = _vertexPoints && _surface.GetFace().type.GetPlain();
-        Far::ConstIndexArray const verts = _factory->GetLevel().GetFaceVertices(face);
+        Far::ConstIndexArray const verts = _factory.GetLevel().GetFaceVertices(face);
         if (areVerticesKept && tessellation.GetNumCoords() == verts.size() &&
             _vertexPoints->Get(verts, _points.data())) {
             return true;
@@ -218,10 +206,10 @@ private:
         for (std::size_t i = 0; i < _values.size(); ++i) {
             Values const &values = _values[i];
             FarExt::Interpolation const interpolation =
-                values.channel == Values::kVarying ? FarExt::Interpolation::Varying
-                                                   : FarExt::internal::GetChannelInterpolation(
-                                                         _factory->GetMesh(), values.channel);
-            status = initSurface(face, interpolation, values.channel);
+                values.channel == Values::kVarying
+                    ? FarExt::Interpolation::Varying
+                    : FarExt::internal::GetChannelInterpolation(_factory.GetMesh(), values.channel);
+            status = _factory.TryInit(face, interpolation, values.channel, _surface);
             if (!status.IsOk()) {
                 return false;
             }
@@ -235,19 +223,14 @@ private:
         return true;
     }
 
-    // Faces after which the types may be other ones.
-    static constexpr std::size_t kFacesOfFactory = 16;
-
     PatchStream const &_stream;
     TessellationFinder _finder;
-    std::shared_ptr<SurfaceFactory const> _ownFactory; // while types are not kept
-    SurfaceFactory const *_factory;
+    SurfaceFactory const &_factory;
     REAL const *const _meshPoints;
     PointDescriptor const _meshPointDesc;
     std::vector<Values> const &_values;
     Sink const &_sink;
     VertexPoints *const _vertexPoints; // null: none are kept
-    std::size_t _numPatches = 0;
     Surface<REAL> _surface;
     std::vector<REAL> _controlPoints;
     std::vector<REAL> _points;
@@ -261,13 +244,12 @@ template <typename REAL>
 PatchStream<REAL>::PatchStream(SurfaceFactory const &factory, PatchLevels levels,
                                Options const &options)
     : _factory(factory), _levels(std::move(levels)), _forest(nullptr), _options(options),
-      _plans(makePlans()), _types(makeTypes()) {}
+      _plans(makePlans()) {}
 
 template <typename REAL>
 PatchStream<REAL>::PatchStream(SurfaceFactory const &factory, CellForest const &forest,
                                Options const &options)
-    : _factory(factory), _levels(0), _forest(&forest), _options(options), _plans(makePlans()),
-      _types(makeTypes()) {}
+    : _factory(factory), _levels(0), _forest(&forest), _options(options), _plans(makePlans()) {}
 
 template <typename REAL>
 std::shared_ptr<internal::PatchPlans> PatchStream<REAL>::makePlans() const {
@@ -276,14 +258,6 @@ std::shared_ptr<internal::PatchPlans> PatchStream<REAL>::makePlans() const {
     return _forest && _forest->_plans
                ? _forest->_plans->Find(options, _options.GetMaxMemory())
                : std::make_shared<internal::PatchPlans>(options, _options.GetMaxMemory());
-}
-
-// Null where those of the factory are kept.
-template <typename REAL>
-std::shared_ptr<internal::StreamTypes> PatchStream<REAL>::makeTypes() const {
-    return _options.GetMaxTypes() == 0
-               ? nullptr
-               : std::make_shared<internal::StreamTypes>(_factory, _options.GetMaxTypes());
 }
 
 // The levels of the edges, then that of the inside; none of a forest.

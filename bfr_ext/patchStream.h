@@ -15,7 +15,6 @@ namespace OpenSubdivHex::BfrExt {
 namespace internal {
 class FaceSections;
 class PatchPlans;
-class StreamTypes;
 } // namespace internal
 
 /// \brief How fine the patches of a stream are: a level of refinement for the inside of each base face
@@ -151,7 +150,7 @@ public:
         /// for each point.  Faces that take more come in sections.  What cannot be cut is a single cell: it
         /// has all points that finer edges of the face, or cells beside it, have on its sides.
         ///
-        /// Besides there is what all faces that look alike have in common, in the cache (SetMaxTypes()).
+        /// Besides there is what all faces that look alike have in common, in the cache, which has a bound of its own (SurfaceFactoryCache).
         Options &SetMaxMemory(std::size_t bytes) {
             _maxMemory = bytes;
             return *this;
@@ -159,24 +158,9 @@ public:
         /// The number that was set.
         std::size_t GetMaxMemory() const { return _maxMemory; }
 
-        /// \brief Sets how many types of faces and cells are kept at a time, each of some kilobytes;
-        /// 0: all, in the cache of the factory.
-        ///
-        /// A stream that may not keep all has a cache of its own, which is forgotten as a whole when it
-        /// has more types, and begun anew: so memory is bounded for meshes whose faces all differ.  Faces
-        /// that threads work at may keep as many types once more for a while.  The faces themselves are not kept
-        /// then.
-        Options &SetMaxTypes(std::size_t count) {
-            _maxTypes = count;
-            return *this;
-        }
-        /// The number that was set.
-        std::size_t GetMaxTypes() const { return _maxTypes; }
-
     private:
         LevelTessellation::Options _tessellationOptions;
         bool _hasDerivatives = false;
-        std::size_t _maxTypes = 0;
         std::size_t _maxMemory = std::size_t(4) << 20;
     };
 
@@ -277,7 +261,6 @@ private:
     struct Batch;
 
     std::shared_ptr<internal::PatchPlans> makePlans() const;
-    std::shared_ptr<internal::StreamTypes> makeTypes() const;
     FarExt::CallStatus checkRange(Index beginFace, Index endFace,
                                   bool *arePlansKept = nullptr) const;
     FarExt::CallStatus checkFace(Index face, std::vector<int> &levels) const;
@@ -296,7 +279,6 @@ private:
     CellForest const *const _forest; // null: levels
     Options const _options;
     std::shared_ptr<internal::PatchPlans> _plans;
-    std::shared_ptr<internal::StreamTypes> _types; // null: those of the factory
 };
 
 extern template class PatchStream<float>;

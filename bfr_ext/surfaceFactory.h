@@ -6,9 +6,10 @@
 
 #include "far_ext/topologyRefiner.h"
 
-#include <array>
+#include <atomic>
 #include <cstddef>
 #include <memory>
+#include <mutex>
 #include <utility>
 #include <vector>
 
@@ -22,9 +23,7 @@ namespace internal {
 class CellType;
 class CellTypes;
 class FaceWalk;
-template <typename TYPE>
-class KeptFaces;
-class PlainFaceTypes;
+class TypeCache;
 } // namespace internal
 
 /// \brief Keeps the weights that surfaces of faces that look alike share, as Bfr::SurfaceFactoryCache.
@@ -41,24 +40,36 @@ class PlainFaceTypes;
 /// Any number of threads and of factories may share a cache.  It grows by some hundred bytes with each type
 /// of faces that it meets.  When a surface of the type is first evaluated, or at once where a feature is
 /// near, it grows by some kilobytes for it and for each type of cell that evaluation goes through.  Of the
-/// tessellations that are evaluated it keeps the weights, for types of faces or of cells.  Surfaces keep
-/// what they need of the cache, so that it may go before them.
+/// tessellations that are evaluated it keeps the weights, for types of faces or of cells.
+///
+/// **Memory** is bounded by what the constructor is told.  When half of it is taken, the cache forgets all types and finds
+/// again those that are asked for: results keep their bits.  The other half is for the types before, which surfaces that
+/// have them keep until they are initialised again or go.  GetMemory() exceeds the bound where surfaces of several such
+/// generations live at once, or a single one needs more.  If a model has more types than there is memory for, they
+/// are found again in each frame: in some milliseconds each.
+///
+/// Surfaces keep what they need of the cache, so that it may go before them.
 class OPENSUBDIVHEX_API SurfaceFactoryCache {
 public:
-    SurfaceFactoryCache();
+    /// \param maxMemory  bytes that it takes at most; by default a gibibyte
+    explicit SurfaceFactoryCache(std::size_t maxMemory = std::size_t(1) << 30);
     ~SurfaceFactoryCache();
 
     SurfaceFactoryCache(SurfaceFactoryCache const &) = delete;
     SurfaceFactoryCache &operator=(SurfaceFactoryCache const &) = delete;
 
+    /// The number that was given.
+    std::size_t GetMaxMemory() const;
+    /// Bytes that types take, with those that surfaces have kept, within some percent.
+    std::size_t GetMemory() const;
     /// Types that are there: those of faces, and those of the cells that evaluation went through.
     std::size_t GetNumTypes() const;
 
     /// The types, for the classes of this library.
-    std::shared_ptr<internal::CellTypes> const &GetTypes() const { return _types; }
+    std::shared_ptr<internal::TypeCache> const &GetTypes() const { return _types; }
 
 private:
-    std::shared_ptr<internal::CellTypes> _types;
+    std::shared_ptr<internal::TypeCache> _types;
 };
 
 /// \brief Makes the surfaces of base faces, as Bfr::RefinerSurfaceFactory.
@@ -277,43 +288,42 @@ public:
     /// \param interpolation  how the data are refined
     /// \param channel        of face-varying data, in range; -1: data of vertices
     /// \param surface        is invalid on failure
-    /// \param isKept         whether what the surface is made of may be kept for the next one of the face
     template <typename REAL>
     FarExt::CallStatus TryInit(Index face, FarExt::Interpolation interpolation, int channel,
-                               Surface<REAL> &surface, bool isKept = true) const;
+                               Surface<REAL> &surface) const;
 
 private:
     struct FaceMaker;
+    struct Types;
 
     SurfaceFactory(FarExt::TopologyRefiner const &refiner, Options options);
     SurfaceFactory(SurfaceFactory const &other, Options options);
 
-    void setTypes();
+    std::shared_ptr<Types const> getTypes() const;
     int getPatchLevel(internal::BaseType const &type) const;
     bool hasRefinedAgain() const;
     FarExt::CallStatus checkIsFace(Index face) const;
     FarExt::CallStatus checkCrowd(Index face, int channel, Index levelFace) const;
-    internal::CellType const *findType(int channel, Index levelFace, Index face,
-                                       FarExt::Interpolation interpolation,
+    internal::CellType const *findType(internal::CellTypes &types, int channel, Index levelFace,
+                                       Index face, FarExt::Interpolation interpolation,
                                        std::vector<Index> &points,
                                        FarExt::CallStatus &status) const;
-    FarExt::CallStatus makeFace(Index face, FarExt::Interpolation interpolation, int channel,
-                                FaceMaker &maker,
+    FarExt::CallStatus makeFace(Types const &types, Index face, FarExt::Interpolation interpolation,
+                                int channel, FaceMaker &maker,
                                 internal::KeptFace<internal::BaseType> const *&made) const;
     template <typename REAL>
     void set(internal::KeptFace<internal::BaseType> const &face, bool isKept,
-             Surface<REAL> &surface) const;
+             std::shared_ptr<Types const> owner, Surface<REAL> &surface) const;
 
     FarExt::TopologyRefiner const &_refiner;
     FarExt::TopologyLevel const _level;
     int const _numRefinements; // of the refiner, when the factory was made
     Options const _options;
-    std::shared_ptr<internal::CellTypes> _types;
+    std::shared_ptr<internal::TypeCache> const _cache;
     std::vector<std::shared_ptr<internal::FaceWalk>> _walks; // of the mesh, and of each channel
-    std::array<internal::PlainFaceTypes *, 2> _plainTypes{}; // by interpolation
-    // The faces that are kept: of the mesh, by interpolation, and then of each channel.
-    internal::KeptFaces<internal::BaseType> *_kept = nullptr;
-    std::shared_ptr<void const> _owner; // of these and of the types, as surfaces have it
+    mutable std::mutex _mutex;
+    mutable std::shared_ptr<Types const> _types; // of which surfaces are made; null: nobody asked
+    mutable std::atomic<void const *> _currentTypes{nullptr}; // the same, to compare with
 };
 
 } // namespace OpenSubdivHex::BfrExt

@@ -3,6 +3,7 @@
 #define OPENSUBDIVHEX_BFR_EXT_CELL_PATTERN_TABLE_H
 
 #include "entryTable.h"
+#include "memoryCount.h"
 
 #include <algorithm>
 #include <atomic>
@@ -37,9 +38,12 @@ enum class PatternOf {
 
 /// \brief Values by key, of any type.
 ///
-/// Any number of threads may use it; what is there already is found without a lock.
+/// Any number of threads may use it; what is there already is found without a lock, and none is held while a value is made.
 class PatternTable {
 public:
+    /// \param memory  counts what the values take
+    explicit PatternTable(MemoryCount &memory) : _memory(memory) {}
+
     /// The kind of patterns of a precision.
     template <typename REAL>
     static constexpr int GetKind(PatternOf of) {
@@ -59,12 +63,15 @@ public:
         };
         Entry const *entry = _entries.Find(hash, isSame);
         if (!entry) {
-            std::shared_ptr<void const> pattern = std::make_shared<PATTERN const>(make());
-            entry = _entries
-                        .Add(std::make_unique<Entry const>(
-                                 Entry{kind, {begin, end}, hash, std::move(pattern)}),
-                             isSame)
-                        .first;
+            auto pattern = std::make_shared<PATTERN const>(make());
+            std::size_t const size = sizeof(PATTERN) + GetHeapSize(*pattern);
+            auto const [added, isNew] = _entries.Add(
+                std::make_unique<Entry const>(Entry{kind, {begin, end}, hash, std::move(pattern)}),
+                isSame);
+            if (isNew) {
+                _memory.Add(decltype(_entries)::kEntrySize + GetHeapSize(added->rest) + size);
+            }
+            entry = added;
         }
         return *static_cast<PATTERN const *>(entry->pattern.get());
     }
@@ -86,6 +93,7 @@ private:
         return hash;
     }
 
+    MemoryCount &_memory;
     EntryTable<Entry> _entries;
 };
 
@@ -106,6 +114,9 @@ public:
         found.store(&pattern, std::memory_order_release);
         return pattern;
     }
+
+    /// None, but for itself.
+    static constexpr std::size_t GetHeapSize() { return 0; }
 
 private:
     std::atomic<void const *> _patterns[SIZE] = {};

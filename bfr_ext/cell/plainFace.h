@@ -3,7 +3,6 @@
 #define OPENSUBDIVHEX_BFR_EXT_CELL_PLAIN_FACE_H
 
 #include "cellType.h"
-#include "entryTable.h"
 #include "faceWalk.h"
 #include "growingPatch.h"
 #include "ringCell.h"
@@ -58,6 +57,7 @@ public:
     std::size_t const hash; ///< of the key
 
     bool HasKey(PlainFaceKey const &key) const;
+    std::size_t GetHeapSize() const { return GetHeapSizes(_key, _points); }
     int GetNumPoints() const { return _numVerts + int(_points.size()); }
     /// Those behind the vertices whose faces are all there.
     std::vector<Point> const &GetPoints() const { return _points; }

@@ -2,6 +2,8 @@
 #ifndef OPENSUBDIVHEX_BFR_EXT_CELL_STEP_MATRIX_H
 #define OPENSUBDIVHEX_BFR_EXT_CELL_STEP_MATRIX_H
 
+#include "memoryCount.h"
+
 #include "far_ext/limit/limitPatch.h"
 
 #include <algorithm>
@@ -39,6 +41,7 @@ public:
 
     std::size_t GetNumRows() const { return _numRows; }
     std::size_t GetNumParentPoints() const { return _numParentPoints; }
+    std::size_t GetHeapSize() const { return internal::GetHeapSize(_block); }
 
     /// Calls function(point of the parent, weight) for the entries of a row, in their order.
     template <typename FUNCTION>
@@ -170,6 +173,7 @@ public:
     ChildStep(StepMatrix const &matrix, std::vector<int> const &rows);
 
     std::size_t GetNumRows() const { return _bytes.size() + _longs.size(); }
+    std::size_t GetHeapSize() const { return GetHeapSizes(_bytes, _longs); }
     /// Copies the points of the child from those that the matrix made.
     template <typename REAL>
     void CopyPoints(REAL const *points, std::size_t paddedSize, REAL *result) const {

@@ -32,6 +32,7 @@ public:
               InnerMasks &masks);
 
     std::vector<Ring> const &GetRings() const { return _rings; }
+    std::size_t GetHeapSize() const { return GetHeapSizes(_rings, _firsts, _block, _inner); }
     /// Has what Apply() reads in single precision brought to the cache, while something else is done.
     void Prefetch() const {
         PrefetchArray(_rings);
