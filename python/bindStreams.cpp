@@ -392,11 +392,11 @@ private:
 class Stream {
 public:
     Stream(std::shared_ptr<FaceSurfaceFactory const> factory, py::object const &levels,
-           int facetSize, bool hasDerivatives, std::size_t maxMemory, std::size_t maxTypes)
+           int facetSize, bool hasDerivatives, std::size_t maxMemory)
         : _factory(std::move(factory)), _facetSize(facetSize), _hasDerivatives(hasDerivatives) {
         CheckFacetSize(facetSize);
-        makeStream(std::get<0>(_streams), levels, maxMemory, maxTypes);
-        makeStream(std::get<1>(_streams), levels, maxMemory, maxTypes);
+        makeStream(std::get<0>(_streams), levels, maxMemory);
+        makeStream(std::get<1>(_streams), levels, maxMemory);
     }
 
     int GetNumFaces() const { return _factory->GetNumFaces(); }
@@ -444,15 +444,13 @@ private:
     using StreamPointer = std::unique_ptr<BfrExt::PatchStream<REAL>>;
 
     template <typename REAL>
-    void makeStream(StreamPointer<REAL> &stream, py::object const &levels, std::size_t maxMemory,
-                    std::size_t maxTypes) {
+    void makeStream(StreamPointer<REAL> &stream, py::object const &levels, std::size_t maxMemory) {
         using Made = BfrExt::PatchStream<REAL>;
         auto const options =
             typename Made::Options()
                 .SetTessellationOptions(LevelTessellation::Options().SetFacetSize(_facetSize))
                 .SetDerivatives(_hasDerivatives)
-                .SetMaxMemory(maxMemory)
-                .SetMaxTypes(maxTypes);
+                .SetMaxMemory(maxMemory);
         if (py::isinstance<Forest>(levels)) {
             _forest = levels.cast<std::shared_ptr<Forest>>();
             stream = std::make_unique<Made>(_factory->Get(), _forest->Get(), options);
@@ -764,8 +762,7 @@ void BindStreams(py::module_ &module) {
 
     py::class_<Stream>(
         module, "PatchStream",
-        "PatchStream(factory, levels, *, facet_size=3, derivatives=False, max_memory=4194304,\n"
-        "            max_types=0)\n\n"
+        "PatchStream(factory, levels, *, facet_size=3, derivatives=False, max_memory=4194304)\n\n"
         "Evaluates the limit surfaces of all faces in bounded memory: hands the patch of each face "
         "to a\n"
         "function and forgets it, or writes those of a range of faces into arrays.  Two patches "
@@ -782,16 +779,12 @@ void BindStreams(py::module_ &module) {
         "    derivatives: whether patches have du and dv\n"
         "    max_memory: bytes that tessellations take at a time; faces that are too large for it "
         "come\n"
-        "        as several patches, their sections\n"
-        "    max_types: types of faces and cells that are kept at a time, some kilobytes each; 0: "
-        "all\n\n"
+        "        as several patches, their sections\n\n"
         "Holes have no patch.  Refining the refiner raises BufferError while a stream runs.")
-        .def(py::init<std::shared_ptr<FaceSurfaceFactory>, py::object, int, bool, std::size_t,
-                      std::size_t>(),
+        .def(py::init<std::shared_ptr<FaceSurfaceFactory>, py::object, int, bool, std::size_t>(),
              py::arg("factory").none(false), py::arg("levels"), py::kw_only(),
              py::arg("facet_size") = 3, py::arg("derivatives") = false,
-             py::arg("max_memory") = BfrExt::PatchStream<float>::Options().GetMaxMemory(),
-             py::arg("max_types") = std::size_t(0))
+             py::arg("max_memory") = BfrExt::PatchStream<float>::Options().GetMaxMemory())
         .def_property_readonly("num_faces", &Stream::GetNumFaces, "Faces of the mesh.")
         .def(
             "run", &Stream::Run,

@@ -467,7 +467,6 @@ class PatchStream:
         facet_size: Literal[0, 3, 4] = 3,
         derivatives: bool = False,
         max_memory: int = 4194304,
-        max_types: int = 0,
     ) -> None: ...
     @property
     def num_faces(self) -> int: ...
