@@ -24,7 +24,7 @@ import opensubdivhex_blender as addon
 
 SIZE = 800
 # Pictures are written with little noise; to be compared, fewer samples are enough.
-SAMPLES = 192 if is_writing else 32
+SAMPLES = 96 if is_writing else 32
 # Means of blocks of pixels are compared, in which noise is small and a moved edge is not.
 BLOCK = 32
 LARGEST_DIFFERENCE = 1.5  # of 255
