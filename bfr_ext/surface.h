@@ -22,6 +22,7 @@ namespace internal {
 class BaseType;
 template <typename TYPE>
 struct KeptFace;
+struct PatchPlace;
 } // namespace internal
 
 /// \brief The limit surface of a base face, as Bfr::Surface: a function of u and v.
@@ -169,6 +170,13 @@ public:
     }
     /// Computes the points of patches behind the control points, which are there.
     void ComputePatchPoints(REAL patchPoints[], PointDescriptor const &patchPointDesc) const;
+    /// \brief Computes those alone that Evaluate() takes at some places, where they are few: in a fraction of the time.
+    ///
+    /// \param patchPoints  GetNumPatchPoints(), the control points being there; others are left as they are
+    /// \param numPlaces    how many places there are
+    /// \param uvs          u and v of each
+    void ComputePatchPoints(REAL patchPoints[], PointDescriptor const &patchPointDesc,
+                            int numPlaces, REAL const uvs[]) const;
     /// @}
 
     /// @name Evaluation
@@ -262,6 +270,9 @@ private:
 
     // The control points, while what evaluates them is brought to the cache.
     Index const *prefetchPoints() const;
+    internal::PatchPlace findPatchPlace(REAL const uv[2], int numDerivatives) const;
+    void computePatchPoints(REAL patchPoints[], PointDescriptor const &patchPointDesc,
+                            std::vector<int> const *patches) const;
     void evaluate(REAL const uv[2], int numDerivatives, REAL const patchPoints[],
                   PointDescriptor const &pointDesc, REAL *const results[6]) const;
     void evaluate(LevelTessellation const &tessellation, REAL const controlPoints[],

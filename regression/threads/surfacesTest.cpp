@@ -157,7 +157,7 @@ TEST(SharedSurfaces, OfOneSmallCache) {
     Shape const &shape = GetFeatureShape("dartsQuads");
     auto const refiner = createRefiner(shape);
     std::vector<double> const expected = evaluateAll(*createFactory(*refiner), shape);
-    SurfaceFactoryCache cache(1 << 21);
+    SurfaceFactoryCache cache(1 << 22);
     auto const factory = createFactory(*refiner, &cache);
     ExpectOnThreads(expected, [&] { return evaluateAll(*factory, shape); });
 }
