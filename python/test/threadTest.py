@@ -46,9 +46,7 @@ def test_other_threads_run_while_the_library_works():
         values.append(osh.CpuEvaluator.eval_stencils(table, positions))
         surfaces = osh.SurfaceFactory(osh.TopologyRefiner(faces, face_mask="smooth"))
         stream, view = osh.PatchStream(surfaces, 5), osh.View(osh.Camera((5, 0, 1)), flatness=0.1)
-        tessellation = osh.LevelTessellation(4, 8)
         works = [lambda: refiner.refine_uniform(5),
-                 lambda: tessellation.facets,
                  lambda: stream.evaluate(positions),
                  lambda: view.make_forest(surfaces, positions),
                  lambda: copy.copy(refiner),
