@@ -135,7 +135,7 @@ public:
             _hasDerivatives = hasDerivatives;
             return *this;
         }
-        /// Whether they have.
+        /// Whether patches have derivatives.
         bool HasDerivatives() const { return _hasDerivatives; }
 
         /// \brief Sets how many bytes tessellations take at a time, over all threads, with what it takes to
@@ -144,10 +144,10 @@ public:
         /// Patches with the same levels share one.  Where not all of them fit, those patches come one
         /// behind the other, and few tessellations are made twice.
         ///
-        /// A thread has one patch at a time, and its points.  What it takes to make its tessellation is a
-        /// fourth of these bytes at most, or 3 megabytes where that is more (4 with derivatives): about 300
-        /// for each point.  Faces that take more come in sections.  What cannot be cut is a single cell: it
-        /// has all points that finer edges of the face, or cells beside it, have on its sides.
+        /// A thread has one patch at a time, and its points.  Making a tessellation takes about 300 bytes a
+        /// point: at most a fourth of the bytes that are set, or 3 megabytes where these are more (4 with
+        /// derivatives).  Faces that take more come in sections.  A single cell is never cut: it has all
+        /// points that finer edges of the face, or cells beside it, have on its sides.
         ///
         /// Besides there is what all faces that look alike have in common, in the cache, which has a bound of its own (SurfaceFactoryCache).
         Options &SetMaxMemory(std::size_t bytes) {
@@ -221,8 +221,8 @@ public:
 
     /// Takes the face and the tessellation of a patch, as a sink takes a patch.
     using TessellationSink = std::function<bool(Index face, LevelTessellation const &tessellation)>;
-    /// \brief Hands out the tessellations of all patches, as Run() makes them, without points: for whoever needs
-    /// to know what patches there will be.
+    /// \brief Hands out the tessellations of all patches, as Run() makes them, without points: for callers that
+    /// must know all patches before the first point.
     ///
     /// \return  as that of Run()
     bool RunTessellations(TessellationSink const &sink, FarExt::CallStatus *status = nullptr) const;
@@ -241,7 +241,7 @@ public:
         /// face would have; -1: that of the face's vertex.
         std::vector<int> edgePoints;
     };
-    /// Those of a face for which GetNumSections() gives more than 1; of others none.
+    /// The sections of a face with more than one (GetNumSections()); empty for other faces.
     SectionPolygons GetSectionPolygons(Index face) const;
 
     /// The factory that was given.

@@ -262,7 +262,7 @@ public:
                               PointDescriptor const &meshPointDesc, REAL result[]) const;
     /// @}
 
-    /// What it is made of, for the classes of this library; of a valid surface.
+    /// The type and the points of the face, for the classes of this library; the surface must be valid.
     internal::KeptFace<internal::BaseType> const &GetFace() const;
 
 private:

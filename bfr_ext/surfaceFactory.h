@@ -34,13 +34,13 @@ class TypeCache;
 /// \code
 ///     BfrExt::SurfaceFactoryCache cache; // for several meshes
 ///     BfrExt::SurfaceFactory::Options options;
-///     options.SetCache(&cache);
+///     options.SetExternalCache(&cache);
 /// \endcode
 ///
 /// Any number of threads and of factories may share a cache.  It grows by some hundred bytes with each type
 /// of faces that it meets.  When a surface of the type is first evaluated, or at once where a feature is
-/// near, it grows by some kilobytes for it and for each type of cell that evaluation goes through.  Of the
-/// tessellations that are evaluated it keeps the weights, for types of faces or of cells.
+/// near, it grows by some kilobytes for it and for each type of cell that evaluation goes through.  It also keeps the
+/// weights of evaluated tessellations, for types of faces or of cells.
 ///
 /// **Memory** is bounded by what the constructor is told.  When half of it is taken, the cache forgets all types and finds
 /// again those that are asked for: results keep their bits.  The other half is for the types before, which surfaces that
@@ -90,8 +90,8 @@ private:
 /// its evaluators make the control points.  FarExt::TopologyLevel::GetFaceBaseFace() leads from faces of
 /// GetLevel() to those of level 0, with their materials.
 ///
-/// No surface have holes, the few faces that FaceHasLimitSurface() names and, with VTX_BOUNDARY_NONE, faces at a boundary,
-/// which has no limit.
+/// Holes have no surface, nor have the few faces that FaceHasLimitSurface() names and, with VTX_BOUNDARY_NONE, faces at a
+/// boundary, because such a boundary has no limit.
 ///
 /// **Memory.** The first surface of a mesh, or of a channel, takes 8 bytes for each corner of the mesh.  When a face gets its
 /// second surface, about 200 bytes are kept for it, within Options::SetMemoryOfFaces(): further surfaces of the face, as in
@@ -194,19 +194,18 @@ public:
     /// Face-varying channels.
     int GetNumFVarChannels() const { return _refiner.GetNumFVarChannels(); }
 
-    /// \brief Whether a face has a surface; a no is no failure, of which an error callback
-    /// (FarExt::SetErrorCallback()) is told.
+    /// \brief Whether a face has a surface.  False is no failure: an error callback (FarExt::SetErrorCallback()) is not called.
     ///
-    /// \param status  says why not: InvalidArgument for a face out of range and for a hole, and behind
-    ///                a first step for a refiner that has refined again since the factory was made;
-    ///                Unsupported for a face at a boundary with VTX_BOUNDARY_NONE, and for one whose surface
-    ///                depends on too many faces, the status naming the vertex or the face: where a vertex
-    ///                of the face, or one joined to it by an edge, has more than 512 faces, 128 unless all
-    ///                of its edges are alike, 64 if some of them are semi-sharp then; or is in
-    ///                a face with more than 1,024 vertices.  At a non-manifold vertex that is a corner for
-    ///                ever, as a pole that faces name twice, the faces of each fan count by themselves, up to 4,096
+    /// \param status  the reason:
+    ///                 - InvalidArgument: a face out of range; a hole; behind a first step, a refiner that has refined
+    ///                   again since the factory was made
+    ///                 - Unsupported: a face at a boundary with VTX_BOUNDARY_NONE; a face whose surface depends on too many
+    ///                   faces.  The status names the vertex of the face, or its neighbour by an edge, with more than 512
+    ///                   faces (128 unless all of its edges are alike, then 64 if some of them are semi-sharp), or its face
+    ///                   with more than 1,024 vertices.  At a non-manifold vertex that stays, such as a pole that faces name
+    ///                   twice, each fan may have 4,096 faces
     bool FaceHasLimitSurface(Index face, FarExt::CallStatus *status = nullptr) const;
-    /// The same but for vertices of many faces, whose limits take long to find.
+    /// As FaceHasLimitSurface(), without the test of vertices of many faces, which takes long.
     FarExt::CallStatus CheckFace(Index face) const;
     /// The parameterization of a face, which is in range.
     Parameterization GetFaceParameterization(Index face) const;

@@ -403,8 +403,8 @@ void BindSurfaces(py::module_ &module) {
         .def_property_readonly("num_faces", &FaceSurfaceFactory::GetNumFaces,
                                "Faces that may have surfaces.")
         .def("has_limit_surface", &hasLimitSurface,
-             "has_limit_surface(face)\n\nFalse for holes and, with boundary 'none', for faces at "
-             "a boundary.",
+             "has_limit_surface(face)\n\nFalse for holes, with boundary 'none' for faces at a "
+             "boundary, and for faces that depend on\ntoo many others: vertex_surface() says why.",
              py::arg("face"))
         .def("vertex_surface", &makeVertexSurface,
              "vertex_surface(face)\n\nThe Surface of vertex data.  Raises StatusError where the "
@@ -420,16 +420,18 @@ void BindSurfaces(py::module_ &module) {
     py::class_<Places>(
         module, "SurfacePlaces",
         "SurfacePlaces(factory, faces, uv, *, interpolation_mode='vertex', fvar_channel=0)\n\n"
-        "Places of any faces, in any order, that are evaluated together, frame after frame, on as\n"
-        "many threads as set_num_threads or OpenMP say: ray hits, samples, roots of hair.  The\n"
-        "factory need not live on.  Points are those of Surface.evaluate at (u, v).\n\n"
+        "Evaluates points of any faces, in any order, together, frame after frame, on as many "
+        "threads\n"
+        "as set_num_threads or OpenMP say: ray hits, samples, roots of hair.  The factory need not "
+        "live\n"
+        "on.  Points have the bits of Surface.evaluate at (u, v).\n\n"
         "Args:\n"
         "    factory: a SurfaceFactory\n"
         "    faces: integers, shape (places,)\n"
         "    uv: u and v of each place in its face, shape (places, 2); moved to the boundary of\n"
         "        the face where they are outside\n"
         "    interpolation_mode: 'vertex', 'varying' or 'face_varying'\n"
-        "    fvar_channel: of face-varying points, which are values of this channel\n\n"
+        "    fvar_channel: with 'face_varying' the channel, whose values are the points\n\n"
         "Raises IndexError for a face out of range and ValueError for uv that are not finite, "
         "which\n"
         "name the row, and StatusError for a face without a surface.")

@@ -72,7 +72,6 @@ set_tests_properties(consumer.build PROPERTIES FIXTURES_REQUIRED installed)
 add_test(NAME consumer.migration
   COMMAND ${CMAKE_COMMAND}
     -D sourceDir=${PROJECT_SOURCE_DIR}
-    -D includeDir=${consumerDir}/prefix/${CMAKE_INSTALL_INCLUDEDIR}/opensubdivhex
     -D workDir=${consumerDir}/migration
     -D config=$<CONFIG>
     "-D options=-G${CMAKE_GENERATOR};-DCMAKE_PREFIX_PATH=${consumerDir}/prefix\;${CMAKE_PREFIX_PATH};-DCMAKE_CXX_COMPILER=${CMAKE_CXX_COMPILER};-DCMAKE_CXX_FLAGS=${CMAKE_CXX_FLAGS};-DCMAKE_TOOLCHAIN_FILE=${CMAKE_TOOLCHAIN_FILE};-DOpenSubdiv_ROOT=${OpenSubdiv_ROOT};-DOpenSubdiv_DIR=${OpenSubdiv_DIR}"
@@ -144,6 +143,9 @@ if(programs)
       -P ${PROJECT_SOURCE_DIR}/regression/consumer/devices.cmake)
 endif()
 
+add_test(NAME consumer.examples
+  COMMAND ${CMAKE_COMMAND} -D sourceDir=${PROJECT_SOURCE_DIR} -D opensubdivDir=${OpenSubdiv_INCLUDE_DIR}
+    -P ${PROJECT_SOURCE_DIR}/regression/consumer/examples.cmake)
 add_test(NAME consumer.versions
   COMMAND ${CMAKE_COMMAND} -D sourceDir=${PROJECT_SOURCE_DIR} -D version=${PROJECT_VERSION}
     -P ${PROJECT_SOURCE_DIR}/regression/consumer/versions.cmake)
