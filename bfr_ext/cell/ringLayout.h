@@ -2,6 +2,8 @@
 #ifndef OPENSUBDIVHEX_BFR_EXT_CELL_RING_LAYOUT_H
 #define OPENSUBDIVHEX_BFR_EXT_CELL_RING_LAYOUT_H
 
+#include "memoryCount.h"
+
 #include "far_ext/limit/limitPatch.h"
 
 #include <algorithm>
@@ -27,6 +29,7 @@ public:
 
     int GetNumFaces() const { return _numFaces; }
     bool AreSame() const { return _sizes.empty(); }
+    std::size_t GetHeapSize() const { return internal::GetHeapSize(_sizes); }
     int operator[](int face) const { return AreSame() ? _firstSize : _sizes[std::size_t(face)]; }
 
 private:
@@ -47,6 +50,7 @@ struct Ring {
     /// Whether the faces around the vertex and its neighbours are a piece of a regular lattice.
     bool isInLattice;
 
+    std::size_t GetHeapSize() const { return faceSizes.GetHeapSize(); }
     int GetNumFaces() const { return faceSizes.GetNumFaces(); }
     /// The size of a face; face -1 is the last.
     int GetFaceSize(int face) const { return faceSizes[face < 0 ? GetNumFaces() - 1 : face]; }

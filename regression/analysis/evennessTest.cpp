@@ -34,22 +34,6 @@ double measureSphere(Shape const &shape, AnyScheme const &scheme, int level = kL
     return MeasureSphereUnevenness(RefineSurface(shape, scheme, level).back().mesh);
 }
 
-/// Three quads of each triangle, or four of each quad, with their vertices on the unit sphere.
-Shape makeSphereOfQuads(Shape const &shape) {
-    PolygonMesh const mesh = RefineSurface(shape, Sdc::SCHEME_CATMARK, 1).back().mesh;
-    Shape result;
-    result.name = shape.name + " in quads";
-    result.faceVertices = mesh.faceVertices;
-    for (int face = 0; face < mesh.GetNumFaces(); ++face) {
-        result.faceSizes.push_back(mesh.GetFaceSize(face));
-    }
-    for (Eigen::Vector3d const &position : mesh.positions) {
-        Eigen::Vector3d const onSphere = position.normalized();
-        result.positions.insert(result.positions.end(), onSphere.begin(), onSphere.end());
-    }
-    return result;
-}
-
 /// By row of faces from the line on: beside a crease along the outermost line, and beside the border
 /// of a torus without the row above that.
 struct Strips {
@@ -179,7 +163,7 @@ TEST(Evenness, QuadsOfOtherKinds) {
           Sphere{platonics[1], 0.0982, 0.1004}, Sphere{platonics[2], 0.1437, 0.1487},
           Sphere{MakeSphereHull(60, 200), 0.2307, 0.2082}}) {
         SCOPED_TRACE(row.shape.name);
-        Shape const sphere = makeSphereOfQuads(row.shape);
+        Shape const sphere = MakeSphereOfQuads(row.shape);
         EXPECT_NEAR(measureSphere(sphere, smooth), row.smooth, kDigits);
         EXPECT_NEAR(measureSphere(sphere, Sdc::SCHEME_CATMARK), row.catmark, kDigits);
     }

@@ -240,14 +240,9 @@ public:
     void LookAtRings() {
         constexpr int kNumRings = 2;
         _chosen.resize(kNumRings);
-        for (int vertex = 0; vertex < _mesh.GetNumVertices(); ++vertex) {
-            double const distance = _mesh.positions[vertex].head<2>().norm();
-            for (int ring = 0; ring < kNumRings; ++ring) {
-                if (distance < std::ldexp(1, -ring) && distance >= std::ldexp(0.5, -ring)) {
-                    _chosen[ring].vertices.push_back(vertex);
-                    _chosen[ring].groups.push_back(0);
-                }
-            }
+        for (int ring = 0; ring < kNumRings; ++ring) {
+            _chosen[ring].vertices = FindRing(_mesh, ring);
+            _chosen[ring].groups.assign(_chosen[ring].vertices.size(), 0);
         }
     }
 
