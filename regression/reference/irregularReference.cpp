@@ -327,9 +327,10 @@ std::optional<Point> NewPointByPath(std::vector<Point> const &face, int i, QuadP
     if (!row || row->weights.empty()) {
         return {};
     }
+    bool const isBackwards = rowOfPath(in) < rowOfPath(out);
     Point sum = Point::Zero(face[0].size());
     for (int j = 0; j < 6; ++j) {
-        sum += row->weights[j] * face[(i + (rowOfPath(in) < rowOfPath(out) ? 6 - j : j)) % 6];
+        sum += row->weights[j] * face[(i + (isBackwards ? 6 - j : j)) % 6];
     }
     return sum;
 }
