@@ -2,6 +2,7 @@
 #include "cellForest.h"
 
 #include "far_ext/vtr/hierarchy.h"
+#include "far_ext/vtr/parallel.h"
 
 #include <algorithm>
 #include <iterator>
@@ -33,23 +34,24 @@ bool CellForest::isReversed(Index face, int local) const {
 
 void CellForest::MatchEdges() {
     Level const &level = _level.GetLevel();
-    _polylines = _edges;
-    for (Index face = 0; face < GetNumFaces(); ++face) {
-        CellTree const &tree = GetTree(face);
-        bool const isOfFace = tree.GetFaceSize() == level.GetFaceSize(face);
-        _isMatched[std::size_t(face)] = isOfFace;
-        if (!isOfFace || !tree.IsRefined(0)) {
-            continue;
-        }
-        for (int local = 0; local < level.GetFaceSize(face); ++local) {
-            Polyline const own = tree.GetEdgePolyline(local);
-            if (own.GetNumPoints() == 0) {
-                continue;
+    auto const hasTree = [&](Index face) {
+        return GetTree(face).GetFaceSize() == level.GetFaceSize(face);
+    };
+    FarExt::internal::ParallelFor(
+        GetNumFaces(), [&](Index face) { _isMatched[std::size_t(face)] = hasTree(face); });
+    // The second face of an edge runs it backwards.
+    FarExt::internal::ParallelFor(Index(_edges.size()), [&](Index edge) {
+        Polyline &polyline = _polylines[std::size_t(edge)];
+        polyline = _edges[std::size_t(edge)];
+        for (int side = 0; side < 2; ++side) {
+            Index const face = level.edgeFaces[edge][side];
+            if (face >= 0 && hasTree(face)) {
+                Polyline const own =
+                    GetTree(face).GetEdgePolyline(level.edgeFaceLocals[edge][side]);
+                polyline.Merge(side == 0 ? own : own.GetReversed());
             }
-            Index const edge = level.faceEdges[level.faceFirstCorner[face] + local];
-            _polylines[std::size_t(edge)].Merge(isReversed(face, local) ? own.GetReversed() : own);
         }
-    }
+    });
     // The edges of a line run along one curve, from either end.
     struct Line {
         Index start;

@@ -227,7 +227,7 @@ public:
                                     int const interiorIndices[]) const;
     /// @}
 
-    /// What it is made of, for the classes of this library.
+    /// Its data, for the classes of this library.
     internal::TessellationData const &GetData() const { return *_data; }
 
 private:

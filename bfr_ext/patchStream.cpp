@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "patchStream.h"
 
-#include "cell/baseType.h"
 #include "stream/patchPlans.h"
-#include "stream/streamTypes.h"
 
 #include "far_ext/executor.h"
 #include "far_ext/stencil/interpolationMode.h"
@@ -30,47 +28,6 @@ constexpr Far::Index kMaxRange = 128;
 constexpr Far::Index kNumRangesWanted = 64;
 
 } // namespace
-
-/// \brief The points of base vertices that faces of a run have evaluated, for the next faces there: of a forest many
-/// faces have no other points.
-///
-/// All plain faces around a vertex give it the same point, to the bit, so that it is of no matter which one is the
-/// first.
-template <typename REAL>
-class PatchStream<REAL>::VertexPoints {
-public:
-    VertexPoints(Index numVertices, int size)
-        : _size(std::size_t(size)), _points(std::size_t(numVertices) * _size),
-          _states(new std::atomic<State>[std::size_t(numVertices)]()) {}
-
-    /// Writes those of some vertices, or returns false where one is not there.
-    bool Get(Far::ConstIndexArray const &verts, REAL *points) const {
-        for (Index const vert : verts) {
-            if (_states[std::size_t(vert)].load(std::memory_order_acquire) != State::Written) {
-                return false;
-            }
-            points = std::copy_n(&_points[std::size_t(vert) * _size], _size, points);
-        }
-        return true;
-    }
-
-    void Add(Index vert, REAL const *point) {
-        std::atomic<State> &state = _states[std::size_t(vert)];
-        State expected = State::None;
-        if (state.load(std::memory_order_relaxed) == State::None &&
-            state.compare_exchange_strong(expected, State::InWork, std::memory_order_relaxed)) {
-            std::copy_n(point, _size, &_points[std::size_t(vert) * _size]);
-            state.store(State::Written, std::memory_order_release);
-        }
-    }
-
-private:
-    enum class State : unsigned char { None, InWork, Written };
-
-    std::size_t const _size;
-    std::vector<REAL> _points;
-    std::unique_ptr<std::atomic<State>[]> const _states;
-};
 
 /// \brief Finds the tessellations of patches, or makes them: each is there until the next one is asked for.
 template <typename REAL>
@@ -145,22 +102,16 @@ template <typename REAL>
 class alignas(FarExt::internal::kCacheLine) PatchStream<REAL>::Worker {
 public:
     Worker(PatchStream const &stream, REAL const *meshPoints, PointDescriptor const &meshPointDesc,
-           std::vector<Values> const &values, Sink const &sink, VertexPoints *vertexPoints)
-        : _stream(stream), _finder(stream), _factory(&stream._factory), _meshPoints(meshPoints),
-          _meshPointDesc(meshPointDesc), _values(values), _sink(sink), _vertexPoints(vertexPoints),
-          _results(values.size()), _resultStarts(values.size()) {}
+           std::vector<Values> const &values, Sink const &sink)
+        : _stream(stream), _finder(stream), _factory(stream._factory), _meshPoints(meshPoints),
+          _meshPointDesc(meshPointDesc), _values(values), _sink(sink), _results(values.size()),
+          _resultStarts(values.size()) {}
 
     /// \brief Makes the patch of a face that is no hole, or of one of its sections.
     ///
     /// \param section  -1: of the face as a whole
     /// \return  false where the sink ended the stream, or a face has no surface, as status says
     bool Run(Index face, int section, CallStatus &status) {
-        if (_stream._types && _numPatches++ % kFacesOfFactory == 0) {
-            _surface.Clear();
-            _ownFactory.reset();
-            _ownFactory = _stream._types->Get();
-            _factory = _ownFactory.get();
-        }
         LevelTessellation const &tessellation = _finder.Find(face, section);
         if (!evaluatePoints(face, tessellation, status) ||
             !evaluateValues(face, tessellation, status)) {
@@ -179,25 +130,14 @@ private:
         _surface.GatherControlPoints(meshPoints, desc, _controlPoints.data(), desc.size);
     }
 
-    // Faces are kept: the next frame has them, too.
-    CallStatus initSurface(Index face, FarExt::Interpolation interpolation, int channel) {
-        return _factory->TryInit(face, interpolation, channel, _surface, !_ownFactory);
-    }
-
     bool evaluatePoints(Index face, LevelTessellation const &tessellation, CallStatus &status) {
-        status = initSurface(face, FarExt::Interpolation::Vertex, -1);
+        status = _factory.TryInit(face, FarExt::Interpolation::Vertex, -1, _surface);
         if (!status.IsOk()) {
             return false;
         }
         PointDescriptor const desc(_meshPointDesc.size);
         std::size_t const size = std::size_t(tessellation.GetNumCoords()) * std::size_t(desc.size);
         _points.resize(size);
-        bool const areVerticesKept = _vertexPoints && _surface.GetFace().type.GetPlain();
-        Far::ConstIndexArray const verts = _factory->GetLevel().GetFaceVertices(face);
-        if (areVerticesKept && tessellation.GetNumCoords() == verts.size() &&
-            _vertexPoints->Get(verts, _points.data())) {
-            return true;
-        }
         gather(_meshPoints, _meshPointDesc);
         if (_stream._options.HasDerivatives()) {
             _du.resize(size);
@@ -207,10 +147,6 @@ private:
         } else {
             _surface.Evaluate(tessellation, _controlPoints.data(), desc, _points.data(), desc);
         }
-        for (int i = 0; areVerticesKept && i < verts.size(); ++i) {
-            int const place = tessellation.GetVertexPlace(i);
-            _vertexPoints->Add(verts[i], &_points[std::size_t(place) * std::size_t(desc.size)]);
-        }
         return true;
     }
 
@@ -218,10 +154,10 @@ private:
         for (std::size_t i = 0; i < _values.size(); ++i) {
             Values const &values = _values[i];
             FarExt::Interpolation const interpolation =
-                values.channel == Values::kVarying ? FarExt::Interpolation::Varying
-                                                   : FarExt::internal::GetChannelInterpolation(
-                                                         _factory->GetMesh(), values.channel);
-            status = initSurface(face, interpolation, values.channel);
+                values.channel == Values::kVarying
+                    ? FarExt::Interpolation::Varying
+                    : FarExt::internal::GetChannelInterpolation(_factory.GetMesh(), values.channel);
+            status = _factory.TryInit(face, interpolation, values.channel, _surface);
             if (!status.IsOk()) {
                 return false;
             }
@@ -235,19 +171,13 @@ private:
         return true;
     }
 
-    // Faces after which the types may be other ones.
-    static constexpr std::size_t kFacesOfFactory = 16;
-
     PatchStream const &_stream;
     TessellationFinder _finder;
-    std::shared_ptr<SurfaceFactory const> _ownFactory; // while types are not kept
-    SurfaceFactory const *_factory;
+    SurfaceFactory const &_factory;
     REAL const *const _meshPoints;
     PointDescriptor const _meshPointDesc;
     std::vector<Values> const &_values;
     Sink const &_sink;
-    VertexPoints *const _vertexPoints; // null: none are kept
-    std::size_t _numPatches = 0;
     Surface<REAL> _surface;
     std::vector<REAL> _controlPoints;
     std::vector<REAL> _points;
@@ -261,13 +191,12 @@ template <typename REAL>
 PatchStream<REAL>::PatchStream(SurfaceFactory const &factory, PatchLevels levels,
                                Options const &options)
     : _factory(factory), _levels(std::move(levels)), _forest(nullptr), _options(options),
-      _plans(makePlans()), _types(makeTypes()) {}
+      _plans(makePlans()) {}
 
 template <typename REAL>
 PatchStream<REAL>::PatchStream(SurfaceFactory const &factory, CellForest const &forest,
                                Options const &options)
-    : _factory(factory), _levels(0), _forest(&forest), _options(options), _plans(makePlans()),
-      _types(makeTypes()) {}
+    : _factory(factory), _levels(0), _forest(&forest), _options(options), _plans(makePlans()) {}
 
 template <typename REAL>
 std::shared_ptr<internal::PatchPlans> PatchStream<REAL>::makePlans() const {
@@ -276,14 +205,6 @@ std::shared_ptr<internal::PatchPlans> PatchStream<REAL>::makePlans() const {
     return _forest && _forest->_plans
                ? _forest->_plans->Find(options, _options.GetMaxMemory())
                : std::make_shared<internal::PatchPlans>(options, _options.GetMaxMemory());
-}
-
-// Null where those of the factory are kept.
-template <typename REAL>
-std::shared_ptr<internal::StreamTypes> PatchStream<REAL>::makeTypes() const {
-    return _options.GetMaxTypes() == 0
-               ? nullptr
-               : std::make_shared<internal::StreamTypes>(_factory, _options.GetMaxTypes());
 }
 
 // The levels of the edges, then that of the inside; none of a forest.
@@ -624,18 +545,9 @@ bool PatchStream<REAL>::Run(REAL const meshPoints[], PointDescriptor const &mesh
     if (!FarExt::internal::Report(result, status)) {
         return false;
     }
-    // Sections have no vertices of their own, and derivatives belong to faces.
-    std::unique_ptr<VertexPoints> const vertexPoints =
-        _forest && arePlansKept && !_options.HasDerivatives()
-            ? std::make_unique<VertexPoints>(_factory.GetLevel().GetNumVertices(),
-                                             meshPointDesc.size)
-            : nullptr;
     bool const isDone = runWorkers(
         beginFace, endFace, arePlansKept,
-        [&] {
-            return std::make_unique<Worker>(*this, meshPoints, meshPointDesc, values, sink,
-                                            vertexPoints.get());
-        },
+        [&] { return std::make_unique<Worker>(*this, meshPoints, meshPointDesc, values, sink); },
         result);
     FarExt::internal::Report(result, status);
     return isDone;

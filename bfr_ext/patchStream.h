@@ -15,7 +15,6 @@ namespace OpenSubdivHex::BfrExt {
 namespace internal {
 class FaceSections;
 class PatchPlans;
-class StreamTypes;
 } // namespace internal
 
 /// \brief How fine the patches of a stream are: a level of refinement for the inside of each base face
@@ -58,8 +57,7 @@ private:
 /// and values of varying and face-varying data.
 ///
 /// **Memory** is the sum of Options::SetMaxMemory(), the cache of the factory, and the faces that the factory keeps for the
-/// next frame (SurfaceFactory::Options::SetMemoryOfFaces()), with 8 bytes for each of their corners; for a CellForest also a
-/// point for each vertex of the mesh.
+/// next frame (SurfaceFactory::Options::SetMemoryOfFaces()), with 8 bytes for each of their corners.
 ///
 /// A face whose tessellation would take more memory than a fourth of that has a patch for each of its
 /// *sections* (LevelTessellation::GetSection()).  Neighbouring sections share the points on their boundaries, as
@@ -137,7 +135,7 @@ public:
             _hasDerivatives = hasDerivatives;
             return *this;
         }
-        /// Whether they have.
+        /// Whether patches have derivatives.
         bool HasDerivatives() const { return _hasDerivatives; }
 
         /// \brief Sets how many bytes tessellations take at a time, over all threads, with what it takes to
@@ -146,12 +144,12 @@ public:
         /// Patches with the same levels share one.  Where not all of them fit, those patches come one
         /// behind the other, and few tessellations are made twice.
         ///
-        /// A thread has one patch at a time, and its points.  What it takes to make its tessellation is a
-        /// fourth of these bytes at most, or 3 megabytes where that is more (4 with derivatives): about 300
-        /// for each point.  Faces that take more come in sections.  What cannot be cut is a single cell: it
-        /// has all points that finer edges of the face, or cells beside it, have on its sides.
+        /// A thread has one patch at a time, and its points.  Making a tessellation takes about 300 bytes a
+        /// point: at most a fourth of the bytes that are set, or 3 megabytes where these are more (4 with
+        /// derivatives).  Faces that take more come in sections.  A single cell is never cut: it has all
+        /// points that finer edges of the face, or cells beside it, have on its sides.
         ///
-        /// Besides there is what all faces that look alike have in common, in the cache (SetMaxTypes()).
+        /// Besides there is what all faces that look alike have in common, in the cache, which has a bound of its own (SurfaceFactoryCache).
         Options &SetMaxMemory(std::size_t bytes) {
             _maxMemory = bytes;
             return *this;
@@ -159,24 +157,9 @@ public:
         /// The number that was set.
         std::size_t GetMaxMemory() const { return _maxMemory; }
 
-        /// \brief Sets how many types of faces and cells are kept at a time, each of some kilobytes;
-        /// 0: all, in the cache of the factory.
-        ///
-        /// A stream that may not keep all has a cache of its own, which is forgotten as a whole when it
-        /// has more types, and begun anew: so memory is bounded for meshes whose faces all differ.  Faces
-        /// that threads work at may keep as many types once more for a while.  The faces themselves are not kept
-        /// then.
-        Options &SetMaxTypes(std::size_t count) {
-            _maxTypes = count;
-            return *this;
-        }
-        /// The number that was set.
-        std::size_t GetMaxTypes() const { return _maxTypes; }
-
     private:
         LevelTessellation::Options _tessellationOptions;
         bool _hasDerivatives = false;
-        std::size_t _maxTypes = 0;
         std::size_t _maxMemory = std::size_t(4) << 20;
     };
 
@@ -238,8 +221,8 @@ public:
 
     /// Takes the face and the tessellation of a patch, as a sink takes a patch.
     using TessellationSink = std::function<bool(Index face, LevelTessellation const &tessellation)>;
-    /// \brief Hands out the tessellations of all patches, as Run() makes them, without points: for whoever needs
-    /// to know what patches there will be.
+    /// \brief Hands out the tessellations of all patches, as Run() makes them, without points: for callers that
+    /// must know all patches before the first point.
     ///
     /// \return  as that of Run()
     bool RunTessellations(TessellationSink const &sink, FarExt::CallStatus *status = nullptr) const;
@@ -258,7 +241,7 @@ public:
         /// face would have; -1: that of the face's vertex.
         std::vector<int> edgePoints;
     };
-    /// Those of a face for which GetNumSections() gives more than 1; of others none.
+    /// The sections of a face with more than one (GetNumSections()); empty for other faces.
     SectionPolygons GetSectionPolygons(Index face) const;
 
     /// The factory that was given.
@@ -272,12 +255,10 @@ public:
 
 private:
     class TessellationFinder;
-    class VertexPoints;
     class Worker;
     struct Batch;
 
     std::shared_ptr<internal::PatchPlans> makePlans() const;
-    std::shared_ptr<internal::StreamTypes> makeTypes() const;
     FarExt::CallStatus checkRange(Index beginFace, Index endFace,
                                   bool *arePlansKept = nullptr) const;
     FarExt::CallStatus checkFace(Index face, std::vector<int> &levels) const;
@@ -296,7 +277,6 @@ private:
     CellForest const *const _forest; // null: levels
     Options const _options;
     std::shared_ptr<internal::PatchPlans> _plans;
-    std::shared_ptr<internal::StreamTypes> _types; // null: those of the factory
 };
 
 extern template class PatchStream<float>;

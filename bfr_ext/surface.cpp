@@ -58,15 +58,8 @@ int Surface<REAL>::GetNumControlPoints() const {
 }
 
 template <typename REAL>
-Far::Index const *Surface<REAL>::prefetchPoints() const {
-    if (!IsValid()) {
-        return nullptr;
-    }
-    BaseFace const &face = GetFace();
-    if (internal::PlainFaceType const *const plain = face.type.GetPlain()) {
-        plain->PrefetchRings();
-    }
-    return face.GetPoints();
+Far::Index const *Surface<REAL>::getPoints() const {
+    return IsValid() ? GetFace().GetPoints() : nullptr;
 }
 
 template <typename REAL>
@@ -110,25 +103,58 @@ int Surface<REAL>::GetNumPatchPoints() const {
 template <typename REAL>
 void Surface<REAL>::ComputePatchPoints(REAL patchPoints[],
                                        PointDescriptor const &patchPointDesc) const {
+    computePatchPoints(patchPoints, patchPointDesc, nullptr);
+}
+
+template <typename REAL>
+void Surface<REAL>::ComputePatchPoints(REAL patchPoints[], PointDescriptor const &patchPointDesc,
+                                       int numPlaces, REAL const uvs[]) const {
+    if (!IsValid()) {
+        return;
+    }
+    if (numPlaces >= internal::GetNumFacePatches(GetFaceSize(), _patchLevel)) {
+        ComputePatchPoints(patchPoints, patchPointDesc);
+        return;
+    }
+    std::vector<int> patches;
+    patches.reserve(std::size_t(numPlaces));
+    for (int i = 0; i < numPlaces; ++i) {
+        patches.push_back(findPatchPlace(uvs + 2 * std::ptrdiff_t(i), 0).patch);
+    }
+    std::sort(patches.begin(), patches.end());
+    patches.erase(std::unique(patches.begin(), patches.end()), patches.end());
+    computePatchPoints(patchPoints, patchPointDesc, &patches);
+}
+
+// Of some patches, or of all.
+template <typename REAL>
+void Surface<REAL>::computePatchPoints(REAL patchPoints[], PointDescriptor const &patchPointDesc,
+                                       std::vector<int> const *patches) const {
     if (!IsValid()) {
         return;
     }
     REAL *const points =
         patchPoints + std::ptrdiff_t(GetNumControlPoints()) * patchPointDesc.stride;
     internal::MakeFacePatchPoints(GetFace().type, GetFaceSize(), _patchLevel, patchPoints,
-                                  patchPointDesc.size, patchPointDesc.stride, points);
+                                  patchPointDesc.size, patchPointDesc.stride, patches, points);
+}
+
+// The patch of a place, with derivatives.
+template <typename REAL>
+internal::PatchPlace Surface<REAL>::findPatchPlace(REAL const uv[2], int numDerivatives) const {
+    return internal::FindPatchPlace(
+        internal::FindBfrPlace(_parameterization, {double(uv[0]), double(uv[1])}, 0), GetFaceSize(),
+        _patchLevel, numDerivatives);
 }
 
 template <typename REAL>
 void Surface<REAL>::evaluate(REAL const uv[2], int numDerivatives, REAL const patchPoints[],
                              PointDescriptor const &pointDesc, REAL *const results[6]) const {
     if (IsValid()) {
-        internal::EvaluatePatch(
-            internal::FindPatchPlace(
-                internal::FindBfrPlace(_parameterization, {double(uv[0]), double(uv[1])}, 0),
-                GetFaceSize(), _patchLevel, numDerivatives),
-            numDerivatives, patchPoints + std::ptrdiff_t(GetNumControlPoints()) * pointDesc.stride,
-            pointDesc.size, pointDesc.stride, results);
+        internal::EvaluatePatch(findPatchPlace(uv, numDerivatives), numDerivatives,
+                                patchPoints +
+                                    std::ptrdiff_t(GetNumControlPoints()) * pointDesc.stride,
+                                pointDesc.size, pointDesc.stride, results);
     }
 }
 

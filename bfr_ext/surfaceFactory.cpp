@@ -3,12 +3,14 @@
 
 #include "cell/baseType.h"
 #include "cell/facePatches.h"
+#include "cell/typeCache.h"
 
 #include "far_ext/limit/limitRows.h"
 #include "far_ext/stencil/interpolationMode.h"
 #include "far_ext/vtr/report.h"
 
 #include <algorithm>
+#include <array>
 #include <string>
 #include <utility>
 
@@ -51,38 +53,57 @@ internal::CellRules getRules(FarExt::TopologyRefiner const &refiner, Interpolati
             FarExt::internal::GetStepsToLimit(refiner.GetHexSchemeOptions()), interpolation};
 }
 
+std::shared_ptr<internal::TypeCache> getCache(SurfaceFactory::Options const &options) {
+    SurfaceFactoryCache own;
+    return (options.GetExternalCache() ? *options.GetExternalCache() : own).GetTypes();
+}
+
 } // namespace
 
 SurfaceFactory::SurfaceFactory(FarExt::TopologyRefiner const &refiner, Options options)
     : _refiner(refiner), _level(refiner.GetLevel(refiner.GetHexSchemeOptions().GetSurfaceLevel())),
-      _numRefinements(refiner.GetNumRefinements()), _options(options) {
+      _numRefinements(refiner.GetNumRefinements()), _options(options), _cache(getCache(options)) {
     FarExt::internal::Hierarchy const &hierarchy = refiner.GetHierarchy();
     for (int channel = -1; channel < refiner.GetNumFVarChannels(); ++channel) {
         _walks.push_back(std::make_shared<internal::FaceWalk>(
             hierarchy.GetMesh(channel).levels[std::size_t(_level.GetDepth())]));
     }
-    setTypes();
 }
 
 SurfaceFactory::SurfaceFactory(SurfaceFactory const &other, Options options)
     : _refiner(other._refiner), _level(other._level), _numRefinements(other._numRefinements),
-      _options(options), _walks(other._walks) {
-    setTypes();
-}
+      _options(options), _cache(getCache(options)), _walks(other._walks) {}
 
-// Sets the cache, and what is kept of it.
-void SurfaceFactory::setTypes() {
-    _types = _options.GetExternalCache() ? _options.GetExternalCache()->GetTypes()
-                                         : std::make_shared<internal::CellTypes>();
-    for (Interpolation const interpolation : {Interpolation::Vertex, Interpolation::Varying}) {
-        _plainTypes[std::size_t(interpolation)] =
-            &_types->GetPlainFaces(getRules(_refiner, interpolation));
+// Some types of the cache, with the faces that are kept of them.  Surfaces own it.
+struct SurfaceFactory::Types {
+    Types(SurfaceFactory const &factory, std::shared_ptr<internal::CellTypes> ofCache)
+        : cellTypes(std::move(ofCache)),
+          kept(factory.GetNumFaces(),
+               std::size_t(kNumInterpolations + factory.GetNumFVarChannels()),
+               factory._options.GetMemoryOfFaces()) {
+        for (Interpolation const interpolation : {Interpolation::Vertex, Interpolation::Varying}) {
+            plain[std::size_t(interpolation)] =
+                &cellTypes->GetPlainFaces(getRules(factory._refiner, interpolation));
+        }
     }
-    auto kept = std::make_shared<internal::KeptFaces<internal::BaseType>>(
-        _types, GetNumFaces(), std::size_t(kNumInterpolations + _refiner.GetNumFVarChannels()),
-        _options.GetMemoryOfFaces());
-    _kept = kept.get();
-    _owner = std::move(kept);
+
+    std::shared_ptr<internal::CellTypes> const cellTypes;
+    std::array<internal::PlainFaceTypes *, kNumInterpolations> plain{}; // by interpolation
+    // The faces that are kept: of the mesh, by interpolation, and then of each channel.
+    internal::KeptFaces<internal::BaseType> mutable kept;
+};
+
+// Those that the cache has now.
+auto SurfaceFactory::getTypes() const -> std::shared_ptr<Types const> {
+    std::shared_ptr<Types const> before; // goes without the lock
+    std::lock_guard<std::mutex> const lock(_mutex);
+    std::shared_ptr<internal::CellTypes> cellTypes = _cache->Get();
+    if (!_types || _types->cellTypes != cellTypes) {
+        before = std::move(_types);
+        _types = std::make_shared<Types const>(*this, std::move(cellTypes));
+        _currentTypes.store(_types.get(), std::memory_order_release);
+    }
+    return _types;
 }
 
 SurfaceFactory::~SurfaceFactory() = default;
@@ -182,7 +203,7 @@ bool SurfaceFactory::FaceHasLimitSurface(Index face, CallStatus *status) const {
     Level const &level = _level.GetLevel();
     if (result.IsOk() && findVertexOfManyFaces(level, face) < level.GetFaceSize(face)) {
         std::vector<Index> points;
-        findType(-1, face, face, Interpolation::Vertex, points, result);
+        findType(*_cache->Get(), -1, face, face, Interpolation::Vertex, points, result);
     }
     bool const hasSurface = result.IsOk();
     if (status) {
@@ -196,7 +217,8 @@ Parameterization SurfaceFactory::GetFaceParameterization(Index face) const {
 }
 
 // The type of a face that is not plain, from all of its patch; null, and a status, where it has no limit.
-internal::CellType const *SurfaceFactory::findType(int channel, Index levelFace, Index face,
+internal::CellType const *SurfaceFactory::findType(internal::CellTypes &types, int channel,
+                                                   Index levelFace, Index face,
                                                    Interpolation interpolation,
                                                    std::vector<Index> &points,
                                                    CallStatus &status) const {
@@ -213,7 +235,7 @@ internal::CellType const *SurfaceFactory::findType(int channel, Index levelFace,
     GatherBaseCell(level, levelFace, rules.sdcOptions, cell);
     std::size_t const numPoints = cell.patch.sources.size();
     points.assign(cell.patch.sources.begin(), cell.patch.sources.end());
-    internal::CellType const &type = _types->Find(std::move(cell), rules);
+    internal::CellType const &type = types.Find(std::move(cell), rules);
     Far::ConstIndexArray const verts = level.GetFaceVertices(levelFace);
     int const withManyFaces = findVertexOfManyFaces(level, levelFace);
     if (withManyFaces < verts.size() && !type.HasCorners()) {
@@ -237,8 +259,9 @@ struct SurfaceFactory::FaceMaker {
 };
 
 // Makes what the surface of a face is made of, of the bytes.
-CallStatus SurfaceFactory::makeFace(Index face, Interpolation interpolation, int channel,
-                                    FaceMaker &maker, internal::BaseFace const *&made) const {
+CallStatus SurfaceFactory::makeFace(Types const &types, Index face, Interpolation interpolation,
+                                    int channel, FaceMaker &maker,
+                                    internal::BaseFace const *&made) const {
     CallStatus status = checkIsFace(face);
     if (!status.IsOk()) {
         return status;
@@ -252,11 +275,12 @@ CallStatus SurfaceFactory::makeFace(Index face, Interpolation interpolation, int
     internal::FacePoints<internal::BaseType> points(maker.bytes);
     internal::BaseType type;
     if (internal::PlainFaceType const *const plain =
-            maker.gatherer.Find(*_plainTypes[std::size_t(interpolation)],
+            maker.gatherer.Find(*types.plain[std::size_t(interpolation)],
                                 *_walks.begin()[channel + 1], levelFace, points)) {
         type = internal::BaseType(*plain);
     } else if (internal::CellType const *const cellType =
-                   findType(channel, levelFace, face, interpolation, maker.points, status)) {
+                   findType(*types.cellTypes, channel, levelFace, face, interpolation, maker.points,
+                            status)) {
         type = internal::BaseType(*cellType);
         points.resize(maker.points.size());
         std::copy(maker.points.begin(), maker.points.end(), points.data());
@@ -274,36 +298,43 @@ CallStatus SurfaceFactory::makeFace(Index face, Interpolation interpolation, int
 
 template <typename REAL>
 CallStatus SurfaceFactory::TryInit(Index face, Interpolation interpolation, int channel,
-                                   Surface<REAL> &surface, bool isKept) const {
+                                   Surface<REAL> &surface) const {
+    // A surface that has these types already keeps them: most do, and no lock is taken.
+    auto const *types = static_cast<Types const *>(surface._owner.get());
+    std::shared_ptr<Types const> owner;
+    if (!types || types != _currentTypes.load(std::memory_order_acquire) ||
+        _cache->IsFull(*types->cellTypes)) {
+        owner = getTypes();
+        types = owner.get();
+    }
     auto const kind = std::size_t(channel < 0 ? int(interpolation) : kNumInterpolations + channel);
     internal::BaseFace const *const kept =
-        isKept && !hasRefinedAgain() ? _kept->Find(kind, face) : nullptr;
+        hasRefinedAgain() ? nullptr : types->kept.Find(kind, face);
     if (kept) {
-        set(*kept, true, surface);
+        set(*kept, true, std::move(owner), surface);
         return CallStatus();
     }
     // Where memory runs out, the surface stays as it was.
     static thread_local FaceMaker maker;
     internal::BaseFace const *own = nullptr;
-    CallStatus status = makeFace(face, interpolation, channel, maker, own);
+    CallStatus status = makeFace(*types, face, interpolation, channel, maker, own);
     if (!own) {
         surface.Clear();
-    } else if (internal::BaseFace const *const added =
-                   isKept ? _kept->Add(kind, face, *own) : nullptr) {
-        set(*added, true, surface);
+    } else if (internal::BaseFace const *const added = types->kept.Add(kind, face, *own)) {
+        set(*added, true, std::move(owner), surface);
     } else {
         surface._ownFace.swap(maker.bytes);
-        set(*own, false, surface);
+        set(*own, false, std::move(owner), surface);
     }
     return status;
 }
 
-// Makes the surface that of a face, which is kept or is its own.
+// Makes the surface that of a face, which is kept or is its own; a null owner: it has that already.
 template <typename REAL>
 void SurfaceFactory::set(internal::BaseFace const &face, bool isKept,
-                         Surface<REAL> &surface) const {
-    if (surface._owner != _owner) {
-        surface._owner = _owner;
+                         std::shared_ptr<Types const> owner, Surface<REAL> &surface) const {
+    if (owner) {
+        surface._owner = std::move(owner);
     }
     surface._keptFace = isKept ? &face : nullptr;
     surface._patchLevel = getPatchLevel(face.type);
@@ -375,10 +406,8 @@ bool SurfaceFactory::InitSurfaces(Index face, Surface<REAL> *vertex, Surface<REA
     return FarExt::internal::Report(result, status);
 }
 
-template CallStatus SurfaceFactory::TryInit(Index, Interpolation, int, Surface<float> &,
-                                            bool) const;
-template CallStatus SurfaceFactory::TryInit(Index, Interpolation, int, Surface<double> &,
-                                            bool) const;
+template CallStatus SurfaceFactory::TryInit(Index, Interpolation, int, Surface<float> &) const;
+template CallStatus SurfaceFactory::TryInit(Index, Interpolation, int, Surface<double> &) const;
 template bool SurfaceFactory::InitVertexSurface(Index, Surface<float> *, CallStatus *) const;
 template bool SurfaceFactory::InitVertexSurface(Index, Surface<double> *, CallStatus *) const;
 template bool SurfaceFactory::InitVaryingSurface(Index, Surface<float> *, CallStatus *) const;

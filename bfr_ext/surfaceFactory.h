@@ -6,9 +6,10 @@
 
 #include "far_ext/topologyRefiner.h"
 
-#include <array>
+#include <atomic>
 #include <cstddef>
 #include <memory>
+#include <mutex>
 #include <utility>
 #include <vector>
 
@@ -22,9 +23,7 @@ namespace internal {
 class CellType;
 class CellTypes;
 class FaceWalk;
-template <typename TYPE>
-class KeptFaces;
-class PlainFaceTypes;
+class TypeCache;
 } // namespace internal
 
 /// \brief Keeps the weights that surfaces of faces that look alike share, as Bfr::SurfaceFactoryCache.
@@ -35,30 +34,42 @@ class PlainFaceTypes;
 /// \code
 ///     BfrExt::SurfaceFactoryCache cache; // for several meshes
 ///     BfrExt::SurfaceFactory::Options options;
-///     options.SetCache(&cache);
+///     options.SetExternalCache(&cache);
 /// \endcode
 ///
 /// Any number of threads and of factories may share a cache.  It grows by some hundred bytes with each type
 /// of faces that it meets.  When a surface of the type is first evaluated, or at once where a feature is
-/// near, it grows by some kilobytes for it and for each type of cell that evaluation goes through.  Of the
-/// tessellations that are evaluated it keeps the weights, for types of faces or of cells.  Surfaces keep
-/// what they need of the cache, so that it may go before them.
+/// near, it grows by some kilobytes for it and for each type of cell that evaluation goes through.  It also keeps the
+/// weights of evaluated tessellations, for types of faces or of cells.
+///
+/// **Memory** is bounded by what the constructor is told.  When half of it is taken, the cache forgets all types and finds
+/// again those that are asked for: results keep their bits.  The other half is for the types before, which surfaces that
+/// have them keep until they are initialised again or go.  GetMemory() exceeds the bound where surfaces of several such
+/// generations live at once, or a single one needs more.  If a model has more types than there is memory for, they
+/// are found again in each frame: in some milliseconds each.
+///
+/// Surfaces keep what they need of the cache, so that it may go before them.
 class OPENSUBDIVHEX_API SurfaceFactoryCache {
 public:
-    SurfaceFactoryCache();
+    /// \param maxMemory  bytes that it takes at most; by default a gibibyte
+    explicit SurfaceFactoryCache(std::size_t maxMemory = std::size_t(1) << 30);
     ~SurfaceFactoryCache();
 
     SurfaceFactoryCache(SurfaceFactoryCache const &) = delete;
     SurfaceFactoryCache &operator=(SurfaceFactoryCache const &) = delete;
 
+    /// The number that was given.
+    std::size_t GetMaxMemory() const;
+    /// Bytes that types take, with those that surfaces have kept, within some percent.
+    std::size_t GetMemory() const;
     /// Types that are there: those of faces, and those of the cells that evaluation went through.
     std::size_t GetNumTypes() const;
 
     /// The types, for the classes of this library.
-    std::shared_ptr<internal::CellTypes> const &GetTypes() const { return _types; }
+    std::shared_ptr<internal::TypeCache> const &GetTypes() const { return _types; }
 
 private:
-    std::shared_ptr<internal::CellTypes> _types;
+    std::shared_ptr<internal::TypeCache> _types;
 };
 
 /// \brief Makes the surfaces of base faces, as Bfr::RefinerSurfaceFactory.
@@ -79,8 +90,8 @@ private:
 /// its evaluators make the control points.  FarExt::TopologyLevel::GetFaceBaseFace() leads from faces of
 /// GetLevel() to those of level 0, with their materials.
 ///
-/// No surface have holes, the few faces that FaceHasLimitSurface() names and, with VTX_BOUNDARY_NONE, faces at a boundary,
-/// which has no limit.
+/// Holes have no surface, nor have the few faces that FaceHasLimitSurface() names and, with VTX_BOUNDARY_NONE, faces at a
+/// boundary, because such a boundary has no limit.
 ///
 /// **Memory.** The first surface of a mesh, or of a channel, takes 8 bytes for each corner of the mesh.  When a face gets its
 /// second surface, about 200 bytes are kept for it, within Options::SetMemoryOfFaces(): further surfaces of the face, as in
@@ -183,19 +194,18 @@ public:
     /// Face-varying channels.
     int GetNumFVarChannels() const { return _refiner.GetNumFVarChannels(); }
 
-    /// \brief Whether a face has a surface; a no is no failure, of which an error callback
-    /// (FarExt::SetErrorCallback()) is told.
+    /// \brief Whether a face has a surface.  False is no failure: an error callback (FarExt::SetErrorCallback()) is not called.
     ///
-    /// \param status  says why not: InvalidArgument for a face out of range and for a hole, and behind
-    ///                a first step for a refiner that has refined again since the factory was made;
-    ///                Unsupported for a face at a boundary with VTX_BOUNDARY_NONE, and for one whose surface
-    ///                depends on too many faces, the status naming the vertex or the face: where a vertex
-    ///                of the face, or one joined to it by an edge, has more than 512 faces, 128 unless all
-    ///                of its edges are alike, 64 if some of them are semi-sharp then; or is in
-    ///                a face with more than 1,024 vertices.  At a non-manifold vertex that is a corner for
-    ///                ever, as a pole that faces name twice, the faces of each fan count by themselves, up to 4,096
+    /// \param status  the reason:
+    ///                 - InvalidArgument: a face out of range; a hole; behind a first step, a refiner that has refined
+    ///                   again since the factory was made
+    ///                 - Unsupported: a face at a boundary with VTX_BOUNDARY_NONE; a face whose surface depends on too many
+    ///                   faces.  The status names the vertex of the face, or its neighbour by an edge, with more than 512
+    ///                   faces (128 unless all of its edges are alike, then 64 if some of them are semi-sharp), or its face
+    ///                   with more than 1,024 vertices.  At a non-manifold vertex that stays, such as a pole that faces name
+    ///                   twice, each fan may have 4,096 faces
     bool FaceHasLimitSurface(Index face, FarExt::CallStatus *status = nullptr) const;
-    /// The same but for vertices of many faces, whose limits take long to find.
+    /// As FaceHasLimitSurface(), without the test of vertices of many faces, which takes long.
     FarExt::CallStatus CheckFace(Index face) const;
     /// The parameterization of a face, which is in range.
     Parameterization GetFaceParameterization(Index face) const;
@@ -277,43 +287,42 @@ public:
     /// \param interpolation  how the data are refined
     /// \param channel        of face-varying data, in range; -1: data of vertices
     /// \param surface        is invalid on failure
-    /// \param isKept         whether what the surface is made of may be kept for the next one of the face
     template <typename REAL>
     FarExt::CallStatus TryInit(Index face, FarExt::Interpolation interpolation, int channel,
-                               Surface<REAL> &surface, bool isKept = true) const;
+                               Surface<REAL> &surface) const;
 
 private:
     struct FaceMaker;
+    struct Types;
 
     SurfaceFactory(FarExt::TopologyRefiner const &refiner, Options options);
     SurfaceFactory(SurfaceFactory const &other, Options options);
 
-    void setTypes();
+    std::shared_ptr<Types const> getTypes() const;
     int getPatchLevel(internal::BaseType const &type) const;
     bool hasRefinedAgain() const;
     FarExt::CallStatus checkIsFace(Index face) const;
     FarExt::CallStatus checkCrowd(Index face, int channel, Index levelFace) const;
-    internal::CellType const *findType(int channel, Index levelFace, Index face,
-                                       FarExt::Interpolation interpolation,
+    internal::CellType const *findType(internal::CellTypes &types, int channel, Index levelFace,
+                                       Index face, FarExt::Interpolation interpolation,
                                        std::vector<Index> &points,
                                        FarExt::CallStatus &status) const;
-    FarExt::CallStatus makeFace(Index face, FarExt::Interpolation interpolation, int channel,
-                                FaceMaker &maker,
+    FarExt::CallStatus makeFace(Types const &types, Index face, FarExt::Interpolation interpolation,
+                                int channel, FaceMaker &maker,
                                 internal::KeptFace<internal::BaseType> const *&made) const;
     template <typename REAL>
     void set(internal::KeptFace<internal::BaseType> const &face, bool isKept,
-             Surface<REAL> &surface) const;
+             std::shared_ptr<Types const> owner, Surface<REAL> &surface) const;
 
     FarExt::TopologyRefiner const &_refiner;
     FarExt::TopologyLevel const _level;
     int const _numRefinements; // of the refiner, when the factory was made
     Options const _options;
-    std::shared_ptr<internal::CellTypes> _types;
+    std::shared_ptr<internal::TypeCache> const _cache;
     std::vector<std::shared_ptr<internal::FaceWalk>> _walks; // of the mesh, and of each channel
-    std::array<internal::PlainFaceTypes *, 2> _plainTypes{}; // by interpolation
-    // The faces that are kept: of the mesh, by interpolation, and then of each channel.
-    internal::KeptFaces<internal::BaseType> *_kept = nullptr;
-    std::shared_ptr<void const> _owner; // of these and of the types, as surfaces have it
+    mutable std::mutex _mutex;
+    mutable std::shared_ptr<Types const> _types; // of which surfaces are made; null: nobody asked
+    mutable std::atomic<void const *> _currentTypes{nullptr}; // the same, to compare with
 };
 
 } // namespace OpenSubdivHex::BfrExt

@@ -31,7 +31,8 @@ SurfacePlaces<REAL>::Create(SurfaceFactory const &factory, int numPlaces, Index 
     std::stable_sort(order.begin(), order.end(),
                      [&](Index a, Index b) { return faces[a] < faces[b]; });
     std::unique_ptr<SurfacePlaces> places(new SurfacePlaces());
-    places->_places.reserve(order.size());
+    places->_numbers.reserve(order.size());
+    places->_uvs.reserve(2 * order.size());
     auto const init = [&](Index face, Surface<REAL> &surface) {
         switch (options.interpolationMode) {
         case FarExt::INTERPOLATE_VERTEX:
@@ -47,20 +48,21 @@ SurfacePlaces<REAL>::Create(SurfaceFactory const &factory, int numPlaces, Index 
         Index const face = faces[number];
         if (places->_surfaces.empty() || face != lastFace) {
             lastFace = face;
-            places->_firstPlaces.push_back(Index(places->_places.size()));
+            places->_firstPlaces.push_back(Index(places->_numbers.size()));
             places->_surfaces.emplace_back();
             if (!init(face, places->_surfaces.back())) {
                 return nullptr;
             }
         }
         REAL const *const uv = uvs + 2 * std::ptrdiff_t(number);
-        places->_places.push_back({number, {uv[0], uv[1]}});
+        places->_numbers.push_back(number);
+        places->_uvs.insert(places->_uvs.end(), uv, uv + 2);
     }
-    places->_firstPlaces.push_back(Index(places->_places.size()));
+    places->_firstPlaces.push_back(Index(places->_numbers.size()));
     return places;
 }
 
-// Calls function(surface, patch points, place) for all places.
+// Calls function(surface, patch points, number, uv) for all places.
 template <typename REAL>
 template <typename FUNCTION>
 void SurfacePlaces<REAL>::forEachPlace(REAL const *meshPoints, PointDescriptor const &meshPointDesc,
@@ -73,9 +75,14 @@ void SurfacePlaces<REAL>::forEachPlace(REAL const *meshPoints, PointDescriptor c
             for (auto face = std::size_t(begin); face < std::size_t(end); ++face) {
                 Surface<REAL> const &surface = _surfaces[face];
                 points.resize(std::size_t(surface.GetNumPatchPoints()) * std::size_t(desc.size));
-                surface.PreparePatchPoints(meshPoints, meshPointDesc, points.data(), desc);
-                for (Index i = _firstPlaces[face]; i < _firstPlaces[face + 1]; ++i) {
-                    function(surface, points.data(), _places[std::size_t(i)]);
+                surface.GatherControlPoints(meshPoints, meshPointDesc, points.data(), desc);
+                Index const first = _firstPlaces[face];
+                Index const last = _firstPlaces[face + 1];
+                surface.ComputePatchPoints(points.data(), desc, last - first,
+                                           &_uvs[2 * std::size_t(first)]);
+                for (Index i = first; i < last; ++i) {
+                    function(surface, points.data(), std::ptrdiff_t(_numbers[std::size_t(i)]),
+                             &_uvs[2 * std::size_t(i)]);
                 }
             }
         },
@@ -87,9 +94,9 @@ void SurfacePlaces<REAL>::Evaluate(REAL const meshPoints[], PointDescriptor cons
                                    REAL p[], PointDescriptor const &resultDesc) const {
     PointDescriptor const desc(meshPointDesc.size);
     forEachPlace(meshPoints, meshPointDesc,
-                 [&](Surface<REAL> const &surface, REAL const *points, Place const &place) {
-                     surface.Evaluate(place.uv, points, desc,
-                                      p + std::ptrdiff_t(place.number) * resultDesc.stride);
+                 [&](Surface<REAL> const &surface, REAL const *points, std::ptrdiff_t number,
+                     REAL const *uv) {
+                     surface.Evaluate(uv, points, desc, p + number * resultDesc.stride);
                  });
 }
 
@@ -99,9 +106,10 @@ void SurfacePlaces<REAL>::Evaluate(REAL const meshPoints[], PointDescriptor cons
                                    PointDescriptor const &resultDesc) const {
     PointDescriptor const desc(meshPointDesc.size);
     forEachPlace(meshPoints, meshPointDesc,
-                 [&](Surface<REAL> const &surface, REAL const *points, Place const &place) {
-                     std::ptrdiff_t const result = std::ptrdiff_t(place.number) * resultDesc.stride;
-                     surface.Evaluate(place.uv, points, desc, p + result, du + result, dv + result);
+                 [&](Surface<REAL> const &surface, REAL const *points, std::ptrdiff_t number,
+                     REAL const *uv) {
+                     std::ptrdiff_t const result = number * resultDesc.stride;
+                     surface.Evaluate(uv, points, desc, p + result, du + result, dv + result);
                  });
 }
 

@@ -19,7 +19,8 @@ namespace OpenSubdivHex::BfrExt {
 ///     roots->Evaluate(positions, 3, points, du, dv, 3); // each frame
 /// \endcode
 ///
-/// Results are those of Surface::Evaluate().  Patch points of a face are made once for all of its points, and then freed.
+/// Results are those of Surface::Evaluate().  Patch points of a face are made once for all of its points, only of the patches
+/// that have some, and then freed.
 /// Threads share the faces (FarExt::SetExecutor()); results have the same bits for any number of threads.
 ///
 /// Nothing is changed after construction: several threads may use it.  std::bad_alloc passes through.
@@ -59,7 +60,7 @@ public:
     }
 
     /// Number of points.
-    int GetNumPlaces() const { return int(_places.size()); }
+    int GetNumPlaces() const { return int(_numbers.size()); }
 
     /// \brief Writes the points, in the order of Create().
     ///
@@ -74,11 +75,6 @@ public:
                   REAL du[], REAL dv[], PointDescriptor const &resultDesc) const;
 
 private:
-    struct Place {
-        Index number; // as it was given
-        REAL uv[2];
-    };
-
     SurfacePlaces() = default;
     template <typename FUNCTION>
     void forEachPlace(REAL const *meshPoints, PointDescriptor const &meshPointDesc,
@@ -86,7 +82,8 @@ private:
 
     std::vector<Surface<REAL>> _surfaces; // of the faces that have places
     std::vector<Index> _firstPlaces;      // of each, and the end
-    std::vector<Place> _places;           // by face
+    std::vector<Index> _numbers;          // of the places, as they were given, by face
+    std::vector<REAL> _uvs;               // of these
 };
 
 extern template class SurfacePlaces<float>;

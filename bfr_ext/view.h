@@ -30,11 +30,11 @@ struct Camera {
     int height = 720;        ///< pixels
 };
 
-/// The decision of a view about a cell.
+/// What a view decides about a cell.
 enum class CellVisibility : unsigned char {
-    Visible,    ///< or perhaps so
-    Outside,    ///< of the picture, all of it
-    BackFacing, ///< all of it
+    Visible,    ///< visible, or perhaps so
+    Outside,    ///< all of it is outside of the picture
+    BackFacing, ///< all of it faces away
 };
 
 /// \brief Refines base faces only as far as a camera sees: makes trees of cells.
@@ -46,33 +46,32 @@ enum class CellVisibility : unsigned char {
 ///     BfrExt::CellForest const forest = view.MakeForest(*factory, positions, 3);
 /// \endcode
 ///
-/// **Flatness.**  A cell is refined until its facets are closer to the surface than some pixels.  That is
-/// estimated: the surface is known at the corners of the cells one or two steps on, and the range of the heights of
-/// these over the plane of the cell's corners, some more for what lies between, is taken for the distance.  Where nothing
-/// sharp is near, every other level is expected to have a quarter of it.  It is seen at the least depth, and furthest from
-/// the axis, that a ball around the cell has in the picture.
+/// **Flatness.**  A cell is refined until its facets are closer to the surface than some pixels.  This distance is
+/// estimated: it is the range of heights over the plane of the cell's corners, of the surface at the corners of cells one
+/// or two steps on, and some more for the surface between these.  Where nothing sharp is near, every other level is
+/// expected to have a quarter of the distance.  In pixels it is as large as anywhere in a ball around the cell: at the
+/// least depth, and furthest from the axis.
 /// Sharp edges and boundaries, whose curve may bend in the plane of a cell, get points of their own
 /// (MakeEdge()).
 ///
 /// Facets are what LevelTessellation makes of triangles or quads: hexagons are within the same distance when they are
-/// cut along the diagonal of their half cells, from corner 0 to 3, as a fan from corner 0 does.  Where a surface
-/// that is not at a boundary or sharp edge turns back in its own plane, as all around a leaf without thickness, no
-/// height tells how far its outline is from the sides of cells: SetEdgeLength() refines there.
+/// cut along the diagonal of their half cells, from corner 0 to 3, as a fan from corner 0 does.  A surface without a
+/// boundary or sharp edge may turn back in its own plane, as all around a leaf without thickness.  Heights do not tell
+/// there how far the outline is from the sides of cells: SetEdgeLength() refines it.
 ///
 /// **Lengths.**  A cell can be refined, too, until its sides are shorter than some pixels.
 ///
-/// **Culling** leaves cells as they are which are not seen: meshes stay closed, and what is culled is coarse.  A
-/// face is outside of the picture if its control points are on the outer side of one of the planes through its
-/// sides, or behind the eye: so is their hull, and with it the surface.  A cell of later levels is outside if a ball around it
-/// is, and faces away if (Du x Dv) . (eye - p) < 0 for all its points p.  Both are estimated: corners of the cells one or
-/// two steps on are taken to lie in the ball, and the normals of the polygons there to spread twice as far.  A part of a
-/// sharp edge or boundary is outside as a face is, by the points that its curve depends on.  Whole faces and sharp edges are
-/// never taken for what faces away.
+/// **Culling** leaves unseen cells coarse: meshes stay closed.  A face is outside of the picture if all its control points
+/// are on the outer side of one plane through a side of the picture, or behind the eye: their hull contains the surface.
+/// A cell of later levels is outside if a ball around it is, and faces away if (Du x Dv) . (eye - p) < 0 for all its
+/// points p.  Both are estimated: the ball has the corners of the cells one or two steps on, and normals are taken to
+/// spread twice as far as those of the polygons there.  A part of a sharp edge or boundary is outside as a face is, by the
+/// control points of its curve.  Whole faces and sharp edges never count as facing away.
 ///
 /// **Animation.**  Given the tree of the last frame, a cell that is refined there stays refined until the
-/// error is below a fraction of what is allowed, so that nothing flickers; and so do sharp edges and
-/// boundaries.  What of cells does not depend on the camera, which is most, a ViewBounds keeps from frame to
-/// frame.
+/// error is below a fraction of the pixels that are allowed, so that nothing flickers; and so do sharp edges and
+/// boundaries.  A ViewBounds keeps from frame to frame how flat cells are, most of the work, which does not depend
+/// on the camera.
 ///
 /// Nothing is changed after construction: several threads may use it.  std::bad_alloc passes through.
 class OPENSUBDIVHEX_API View {

@@ -30,10 +30,10 @@ decltype(auto) ElementOf(ARRAY &array, Far::Index i) {
 } // namespace internal
 
 /// \cond  Not for users.
-/// \brief What PrimvarRefinerReal has for all types of weights: nothing for users.
+/// \brief The part of PrimvarRefinerReal that is the same for all types of weights: nothing for users.
 class OPENSUBDIVHEX_API PrimvarRefinerBase {
 protected:
-    /// What is interpolated.
+    /// The kind of data.
     enum class Data { Vertex, Varying, FaceVarying };
 
     /// The weights that make the points of a level, some points at a time.
@@ -152,15 +152,15 @@ public:
         interpolate(level, Data::Varying, -1, src, dst);
     }
 
-    /// \brief Face-uniform data: dst[f] is a copy of what the face of level - 1 has that half 0 of
-    /// f lies in.  Elements need operator= only.
+    /// \brief Face-uniform data: dst[f] is a copy of the element of the face of level - 1 in which half 0
+    /// of f lies.  Elements need operator= only.
     ///
-    /// That is its GetFaceParentFace(); but where half 0 lies in half 1 of a face that two base faces
-    /// share (IsFaceBaseSplit), and whose element is that of half 0, the face across edge 1 of that,
-    /// which lies in the right base face; or, when this counts to another since it lies across an
-    /// edge of level 0 itself (behind other steps), the F-face of the base face, whose index it has.
-    /// So from data of level 0 on, dst[f] is at every level that of GetFaceBaseFace(f, 0), and that of
-    /// GetFaceBaseFace(f, half) is the element with the index of the base face.
+    /// From data of level 0 on, dst[f] is the element of GetFaceBaseFace(f, 0) at every level, and
+    /// dst[GetFaceBaseFace(f, half)] that of a half.  The face of level - 1 is GetFaceParentFace(f), except:
+    ///  - half 0 of f lies in half 1 of a parent in two base faces (IsFaceBaseSplit): the face across
+    ///    edge 1 of the parent, which lies in the right base face;
+    ///  - behind other steps that face may count to another base face, since it lies across an edge of
+    ///    level 0: the F-face of the base face, which has its index.
     template <class T, class U>
     void InterpolateFaceUniform(int level, T const &src, U &dst) const {
         std::vector<Far::Index> const sources = findUniformSources(_refiner, level);

@@ -18,7 +18,7 @@ struct PatchTypes;
 } // namespace internal
 
 /// \cond  Not for users.
-/// \brief What PatchEvaluator gives to its evaluators: nothing for users.
+/// \brief The types that PatchEvaluator shares with its evaluators: nothing for users.
 class OPENSUBDIVHEX_API PatchEvaluatorBase {
 protected:
     /// Where values at places of patches go, or one of their derivatives; null: nowhere.

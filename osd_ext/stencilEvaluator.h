@@ -27,7 +27,7 @@ struct StencilTypes;
 } // namespace internal
 
 /// \cond  Not for users.
-/// \brief What StencilEvaluator gives to its evaluators: nothing for users.
+/// \brief The types that StencilEvaluator shares with its evaluators: nothing for users.
 class StencilEvaluatorBase {
 protected:
     /// The stencils of a table: as StencilEvaluator takes them or, if there are blocks, in these.

@@ -328,8 +328,8 @@ void bindStencilEvaluator(py::module_ &module, char const *name, char const *doc
             "eval_stencils_with_derivatives", &evalDerivatives<EVALUATOR>,
             "eval_stencils_with_derivatives(table, src, dst=None, du=None, dv=None, start=0,\n"
             "                               end=None)\n\n"
-            "The same of a LimitStencilTable, with its first derivatives.  Returns dst, du\n"
-            "and dv.",
+            "Points and first derivatives of a LimitStencilTable, as eval_stencils().  Returns\n"
+            "(dst, du, dv).",
             py::arg("table"), py::arg("src"), py::arg("dst") = py::none(),
             py::arg("du") = py::none(), py::arg("dv") = py::none(), py::arg("start") = 0,
             py::arg("end") = py::none());
@@ -354,12 +354,13 @@ void BindEvaluators(py::module_ &module) {
         "refiner refined again.  Threads that share one wait for each other.")
         .def(py::init<std::shared_ptr<Refiner>, py::object, int>(), py::arg("refiner").none(false),
              py::kw_only(), py::arg("interpolation_mode") = "vertex", py::arg("fvar_channel") = 0)
-        .def_property_readonly("max_level", &Evaluator::GetMaxLevel)
+        .def_property_readonly("max_level", &Evaluator::GetMaxLevel,
+                               "The last level of the refiner.")
         .def("get_num_elements", &Evaluator::GetNumElements,
              "get_num_elements(level)\n\nThe vertices, or face-varying values, of a level.",
              py::arg("level"))
         .def_property_readonly("num_elements_all_levels", &Evaluator::GetNumElementsAllLevels,
-                               "Of levels 1 ... max_level together.")
+                               "Elements of levels 1 ... max_level together.")
         .def(
             "evaluate", &Evaluator::Evaluate,
             "evaluate(src, level=None, dst=None)\n\n"
@@ -382,13 +383,13 @@ void BindEvaluators(py::module_ &module) {
             "has full topology; of vertex data alone.  Arrays are those of evaluate().  The first\n"
             "call for a level takes longer, and keeps memory.  Returns dst.  Raises StatusError.",
             py::arg("src"), py::arg("level") = py::none(), py::arg("dst") = py::none())
-        .def(
-            "evaluate_limit_with_derivatives", &Evaluator::EvaluateLimitWithDerivatives,
-            "evaluate_limit_with_derivatives(src, level=None, dst=None, du=None, dv=None)\n\n"
-            "The same with both first derivatives, which span the tangent plane on side 0 of each\n"
-            "vertex: du and dv are arrays as dst.  Returns (dst, du, dv).",
-            py::arg("src"), py::arg("level") = py::none(), py::arg("dst") = py::none(),
-            py::arg("du") = py::none(), py::arg("dv") = py::none());
+        .def("evaluate_limit_with_derivatives", &Evaluator::EvaluateLimitWithDerivatives,
+             "evaluate_limit_with_derivatives(src, level=None, dst=None, du=None, dv=None)\n\n"
+             "Points, as evaluate_limit(), and both first derivatives, which span the tangent "
+             "plane on\n"
+             "side 0 of each vertex: du and dv are arrays as dst.  Returns (dst, du, dv).",
+             py::arg("src"), py::arg("level") = py::none(), py::arg("dst") = py::none(),
+             py::arg("du") = py::none(), py::arg("dv") = py::none());
 
     module.def(
         "compute_normals", &computeNormals,

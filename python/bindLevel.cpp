@@ -610,8 +610,9 @@ void bindDrawing(py::module_ &module) {
         "                        cut_creases='all', fvar_channels=(), sides=None,\n"
         "                        split_vertices=False, separate_vertices=False,\n"
         "                        generate_base_coords=False, draw_holes=False)\n\n"
-        "The same as triangles: a dict without 'sizes', whose arrays by corner have the shape\n"
-        "(triangles, 3), 'base_coords' (triangles, 3, 2).",
+        "Triangles of the polygons of create_polygon_indices(): a dict without 'sizes', whose "
+        "arrays by corner have\n"
+        "the shape (triangles, 3), 'base_coords' (triangles, 3, 2).",
         &createTriangleIndices);
 }
 
@@ -628,15 +629,24 @@ void BindLevel(py::module_ &module) {
         "was made with full_topology_in_last_level=True; ValueError says so.  RuntimeError is "
         "raised\n"
         "once the refiner refined again.");
-    level.def_property_readonly("depth", &Level::GetDepth)
-        .def_property_readonly("num_vertices", count(&TopologyLevel::GetNumVertices))
-        .def_property_readonly("num_faces", count(&TopologyLevel::GetNumFaces))
-        .def_property_readonly("num_edges", count(&TopologyLevel::GetNumEdges))
+    level
+        .def_property_readonly("depth", &Level::GetDepth,
+                               "Refinements from the base mesh to this level.")
+        .def_property_readonly("num_vertices", count(&TopologyLevel::GetNumVertices),
+                               "Vertices of this level.")
+        .def_property_readonly("num_faces", count(&TopologyLevel::GetNumFaces),
+                               "Faces of this level.")
+        .def_property_readonly("num_edges", count(&TopologyLevel::GetNumEdges),
+                               "Edges of this level.")
         .def_property_readonly("num_face_vertices", count(&TopologyLevel::GetNumFaceVertices),
                                "The number of corners.")
-        .def_property_readonly("num_boundary_edges", count(&TopologyLevel::GetNumBoundaryEdges))
-        .def_property_readonly("num_fvar_channels", count(&TopologyLevel::GetNumFVarChannels))
-        .def_property_readonly("has_full_topology", count(&TopologyLevel::HasFullTopology))
+        .def_property_readonly("num_boundary_edges", count(&TopologyLevel::GetNumBoundaryEdges),
+                               "Edges with one face.")
+        .def_property_readonly("num_fvar_channels", count(&TopologyLevel::GetNumFVarChannels),
+                               "Face-varying channels.")
+        .def_property_readonly(
+            "has_full_topology", count(&TopologyLevel::HasFullTopology),
+            "Whether the level has more than face_vertices: edges, and faces around vertices.")
         .def(
             "validate",
             [](Level const &self) {
@@ -658,8 +668,11 @@ void BindLevel(py::module_ &module) {
         "sharp edges meet, the surface has a tangent plane for each part of the faces between.\n"
         "Side 0 of each vertex has the vertex's index; further ones follow the vertices.")
         .def(py::init(&createSides), py::arg("level"))
-        .def_property_readonly("num_vertices", &LimitSides::GetNumVertices)
-        .def_property_readonly("num_sides", &LimitSides::GetNumSides)
+        .def_property_readonly("num_vertices", &LimitSides::GetNumVertices,
+                               "Vertices of the level.")
+        .def_property_readonly(
+            "num_sides", &LimitSides::GetNumSides,
+            "Sides of all vertices: one each, and further ones along sharp creases.")
         .def("get_vertices", listSides(&LimitSides::GetVertex),
              "get_vertices()\n\nThe vertex of each side: int32, shape (sides,).")
         .def(

@@ -223,9 +223,12 @@ void BindPatches(py::module_ &module) {
         .def(py::init(&createTable), py::arg("refiner"), py::arg("isolation_level"), py::kw_only(),
              py::arg("generate_fvar_tables") = false,
              py::arg("generate_fvar_legacy_linear_patches") = true)
-        .def_property_readonly("num_patches", &PatchTable::GetNumPatches)
-        .def_property_readonly("num_control_vertices", &PatchTable::GetNumControlVertices)
-        .def_property_readonly("num_local_points", &PatchTable::GetNumLocalPoints)
+        .def_property_readonly("num_patches", &PatchTable::GetNumPatches,
+                               "Patches of all base faces.")
+        .def_property_readonly("num_control_vertices", &PatchTable::GetNumControlVertices,
+                               "Vertices of the base mesh.")
+        .def_property_readonly("num_local_points", &PatchTable::GetNumLocalPoints,
+                               "Points that make_points() computes besides the control vertices.")
         .def_property_readonly(
             "local_point_stencil_table", [](PatchTable const &self) { return self.localPoints; },
             "StencilTable: the local points in terms of the control vertices.")
@@ -254,7 +257,7 @@ void BindPatches(py::module_ &module) {
             "coords", &listCoords,
             "float64, shape (patches, 4, 2): u and v of the four corners of each in its face.")
         .def_property_readonly("num_fvar_channels", &PatchTable::GetNumFVarChannels,
-                               "Those that have patches.")
+                               "Channels that have patches.")
         .def(
             "local_point_fvar_stencil_table",
             [](PatchTable const &self, int channel) { return self.GetLocalPoints(channel); },
@@ -333,15 +336,16 @@ void BindPatches(py::module_ &module) {
             [](PatchTable const &self, py::object const &patches, py::object const &st,
                py::object const &points) { return evaluate(self, patches, st, points, 3); },
             "evaluate_with_derivatives(patches, st, points)\n\n"
-            "The same, and the derivatives by s and by t: a tuple of three.",
+            "Points, as evaluate(), and their derivatives by s and by t: a tuple of three.",
             py::arg("patches"), py::arg("st"), py::arg("points"))
         .def(
             "evaluate_with_second_derivatives",
             [](PatchTable const &self, py::object const &patches, py::object const &st,
                py::object const &points) { return evaluate(self, patches, st, points, 6); },
             "evaluate_with_second_derivatives(patches, st, points)\n\n"
-            "The same, and the second ones, by s twice, by s and t, and by t twice: a tuple of "
-            "six.",
+            "Points, their derivatives by s and by t, and second derivatives by s twice, by s and "
+            "t, "
+            "and\nby t twice: a tuple of six.",
             py::arg("patches"), py::arg("st"), py::arg("points"));
 }
 

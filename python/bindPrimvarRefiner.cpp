@@ -230,8 +230,8 @@ void BindPrimvarRefiner(py::module_ &module) {
              "level, which has full\ntopology, from src of that level.  Raises StatusError.",
              py::arg("src"), py::arg("dst") = py::none())
         .def("limit_with_derivatives", &PrimvarRefinement::LimitWithDerivatives,
-             "limit_with_derivatives(src, dst=None, du=None, dv=None)\n\nThe same with both first "
-             "derivatives, on side 0 of each vertex.\n\nReturns (dst, du, dv).",
+             "limit_with_derivatives(src, dst=None, du=None, dv=None)\n\nPoints, as limit(), and "
+             "both first derivatives, on side 0 of each vertex.\n\nReturns (dst, du, dv).",
              py::arg("src"), py::arg("dst") = py::none(), py::arg("du") = py::none(),
              py::arg("dv") = py::none());
 }

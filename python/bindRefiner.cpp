@@ -19,24 +19,15 @@ namespace {
 
 using namespace FarExt;
 
-/// A base mesh: arrays for a Far::TopologyDescriptor to refer to.
-struct BaseMesh {
-    std::vector<int> faceSizes;
-    py::array_t<int> faceVertices;
-    py::array_t<int> creaseVertices;
-    std::vector<float> creaseSharpness;
-    py::array_t<int> cornerVertices;
-    std::vector<float> cornerSharpness;
-    py::array_t<int> holes;
-    std::vector<py::array_t<int>> channelValues;
-    std::vector<Far::TopologyDescriptor::FVarChannel> channels;
-    Far::TopologyDescriptor descriptor;
-};
+std::vector<int> takeVector(py::handle object, char const *name) {
+    py::array_t<int> const array = TakeIndices(object, name);
+    return std::vector<int>(array.data(), array.data() + array.size());
+}
 
 /// \brief How many vertices or values there are: as many as were given, else as many as indices refer to.
 ///
 /// These take memory, however few corners have them: far more than there are corners are not taken to be meant.
-int findCount(py::array_t<int> const &indices, std::optional<int> const &given, char const *name) {
+int findCount(std::vector<int> const &indices, std::optional<int> const &given, char const *name) {
     constexpr std::int64_t kMostInAnyMesh = 65536;
     constexpr std::int64_t kMostPerCorner = 16;
     if (given) {
@@ -46,46 +37,45 @@ int findCount(py::array_t<int> const &indices, std::optional<int> const &given, 
         }
         return *given;
     }
-    auto const most = std::max_element(indices.data(), indices.data() + indices.size());
-    if (indices.size() == 0 || *most < 0) {
+    auto const most = std::max_element(indices.begin(), indices.end());
+    if (indices.empty() || *most < 0) {
         return 0;
     }
     std::int64_t const count = std::int64_t(*most) + 1;
     if (count > std::max(kMostInAnyMesh, kMostPerCorner * std::int64_t(indices.size())) ||
         count > std::numeric_limits<int>::max()) {
         throw py::value_error(
-            std::string(name) + ": corner " + std::to_string(most - indices.data()) +
+            std::string(name) + ": corner " + std::to_string(most - indices.begin()) +
             " refers to number " + std::to_string(*most) + ", but there are " +
             std::to_string(indices.size()) + " corners; pass " + name + " where so many are meant");
     }
     return int(count);
 }
 
-void takeFlatFaces(py::object const &faces, py::object const &offsets, BaseMesh *mesh) {
-    mesh->faceVertices = TakeIndices(faces, "faces");
-    py::array_t<int> const taken = TakeIndices(offsets, "face_offsets");
-    py::ssize_t const numOffsets = taken.size();
-    int const *const first = taken.data();
-    if (numOffsets == 0 || first[0] != 0 || first[numOffsets - 1] != mesh->faceVertices.size()) {
+void takeFlatFaces(py::object const &faces, py::object const &faceOffsets, BaseMesh *mesh) {
+    mesh->faceVertices = takeVector(faces, "faces");
+    std::vector<int> const offsets = takeVector(faceOffsets, "face_offsets");
+    if (offsets.empty() || offsets.front() != 0 ||
+        std::size_t(offsets.back()) != mesh->faceVertices.size()) {
         throw py::value_error("face_offsets: they begin with 0 and end with the " +
                               std::to_string(mesh->faceVertices.size()) + " vertices of all faces");
     }
-    mesh->faceSizes.resize(std::size_t(numOffsets) - 1);
-    for (py::ssize_t f = 0; f + 1 < numOffsets; ++f) {
-        if (first[f + 1] < first[f]) {
+    mesh->faceSizes.resize(offsets.size() - 1);
+    for (std::size_t f = 0; f + 1 < offsets.size(); ++f) {
+        if (offsets[f + 1] < offsets[f]) {
             throw py::value_error("face_offsets: those of face " + std::to_string(f) +
-                                  " descend, from " + std::to_string(first[f]) + " to " +
-                                  std::to_string(first[f + 1]));
+                                  " descend, from " + std::to_string(offsets[f]) + " to " +
+                                  std::to_string(offsets[f + 1]));
         }
-        mesh->faceSizes[std::size_t(f)] = first[f + 1] - first[f];
+        mesh->faceSizes[f] = offsets[f + 1] - offsets[f];
     }
 }
 
 void takeListOfFaces(py::object const &faces, BaseMesh *mesh) {
     if (py::isinstance<py::array>(faces)) {
-        py::array_t<int> taken = TakeIndices(faces, "faces", 2);
+        py::array_t<int, py::array::c_style> const taken = TakeIndices(faces, "faces", 2);
         mesh->faceSizes.assign(std::size_t(taken.shape(0)), int(taken.shape(1)));
-        mesh->faceVertices = taken.reshape({taken.size()});
+        mesh->faceVertices.assign(taken.data(), taken.data() + taken.size());
         return;
     }
     auto const check = [](py::handle object, std::string const &name) {
@@ -105,7 +95,7 @@ void takeListOfFaces(py::object const &faces, BaseMesh *mesh) {
     }
     py::object const joined =
         all.empty() ? py::object(all) : py::module_::import("numpy").attr("concatenate")(all);
-    mesh->faceVertices = TakeIndices(joined, "faces");
+    mesh->faceVertices = takeVector(joined, "faces");
 }
 
 /// Takes creases or corners: a pair (components, sharpness).
@@ -124,33 +114,23 @@ std::pair<py::object, py::object> takePair(py::object const &object, char const 
 
 void takeTags(py::object const &creases, py::object const &corners, py::object const &holes,
               BaseMesh *mesh) {
-    Far::TopologyDescriptor &descriptor = mesh->descriptor;
     if (!creases.is_none()) {
         auto const [edges, sharpness] = takePair(creases, "creases");
-        mesh->creaseVertices = TakeIndices(edges, "creases", 2);
-        if (mesh->creaseVertices.size() != 0 && mesh->creaseVertices.shape(1) != 2) {
+        py::array_t<int, py::array::c_style> const vertices = TakeIndices(edges, "creases", 2);
+        if (vertices.size() != 0 && vertices.shape(1) != 2) {
             throw py::value_error("creases: two vertices for each are needed, the shape is " +
-                                  DescribeShape(mesh->creaseVertices));
+                                  DescribeShape(vertices));
         }
-        descriptor.numCreases = int(mesh->creaseVertices.shape(0));
-        mesh->creaseSharpness =
-            TakeFloats(sharpness, "creases", std::size_t(descriptor.numCreases));
-        descriptor.creaseVertexIndexPairs = mesh->creaseVertices.data();
-        descriptor.creaseWeights = mesh->creaseSharpness.data();
+        mesh->creaseVertices.assign(vertices.data(), vertices.data() + vertices.size());
+        mesh->creaseSharpness = TakeFloats(sharpness, "creases", std::size_t(vertices.shape(0)));
     }
     if (!corners.is_none()) {
         auto const [vertices, sharpness] = takePair(corners, "corners");
-        mesh->cornerVertices = TakeIndices(vertices, "corners");
-        descriptor.numCorners = int(mesh->cornerVertices.size());
-        mesh->cornerSharpness =
-            TakeFloats(sharpness, "corners", std::size_t(descriptor.numCorners));
-        descriptor.cornerVertexIndices = mesh->cornerVertices.data();
-        descriptor.cornerWeights = mesh->cornerSharpness.data();
+        mesh->cornerVertices = takeVector(vertices, "corners");
+        mesh->cornerSharpness = TakeFloats(sharpness, "corners", mesh->cornerVertices.size());
     }
     if (!holes.is_none()) {
-        mesh->holes = TakeIndices(holes, "holes");
-        descriptor.numHoles = int(mesh->holes.size());
-        descriptor.holeIndices = mesh->holes.data();
+        mesh->holes = takeVector(holes, "holes");
     }
 }
 
@@ -164,7 +144,7 @@ void takeChannels(py::object const &fvarChannels, py::object const &numFVarValue
     for (py::handle const channel : fvarChannels) {
         std::string const name =
             "fvar_channels[" + std::to_string(mesh->channelValues.size()) + "]";
-        mesh->channelValues.push_back(TakeIndices(channel, name.c_str()));
+        mesh->channelValues.push_back(takeVector(channel, name.c_str()));
         if (mesh->channelValues.back().size() != mesh->faceVertices.size()) {
             throw py::value_error(
                 name + ": one value for each of the " + std::to_string(mesh->faceVertices.size()) +
@@ -173,23 +153,49 @@ void takeChannels(py::object const &fvarChannels, py::object const &numFVarValue
     }
     std::vector<std::optional<int>> counts(mesh->channelValues.size());
     if (!numFVarValues.is_none()) {
-        py::array_t<int> const taken = TakeIndices(numFVarValues, "num_fvar_values");
-        if (std::size_t(taken.size()) != counts.size()) {
+        std::vector<int> const taken = takeVector(numFVarValues, "num_fvar_values");
+        if (taken.size() != counts.size()) {
             throw py::value_error("num_fvar_values: one number for each of the " +
                                   std::to_string(counts.size()) + " fvar_channels is needed, not " +
                                   std::to_string(taken.size()));
         }
-        std::copy(taken.data(), taken.data() + taken.size(), counts.begin());
+        std::copy(taken.begin(), taken.end(), counts.begin());
     }
     for (std::size_t i = 0; i < counts.size(); ++i) {
-        Far::TopologyDescriptor::FVarChannel channel;
-        channel.numValues = findCount(mesh->channelValues[i], counts[i], "num_fvar_values");
-        channel.valueIndices = mesh->channelValues[i].data();
-        mesh->channels.push_back(channel);
+        mesh->numChannelValues.push_back(
+            findCount(mesh->channelValues[i], counts[i], "num_fvar_values"));
     }
-    mesh->descriptor.numFVarChannels = int(mesh->channels.size());
-    mesh->descriptor.fvarChannels = mesh->channels.data();
 }
+
+/// A mesh for the library, which refers to it.
+struct Description {
+    std::vector<Far::TopologyDescriptor::FVarChannel> channels;
+    Far::TopologyDescriptor descriptor;
+
+    explicit Description(BaseMesh const &mesh) {
+        descriptor.numVertices = mesh.numVertices;
+        descriptor.numFaces = int(mesh.faceSizes.size());
+        descriptor.numVertsPerFace = mesh.faceSizes.data();
+        descriptor.vertIndicesPerFace = mesh.faceVertices.data();
+        descriptor.isLeftHanded = mesh.isLeftHanded;
+        descriptor.numCreases = int(mesh.creaseSharpness.size());
+        descriptor.creaseVertexIndexPairs = mesh.creaseVertices.data();
+        descriptor.creaseWeights = mesh.creaseSharpness.data();
+        descriptor.numCorners = int(mesh.cornerVertices.size());
+        descriptor.cornerVertexIndices = mesh.cornerVertices.data();
+        descriptor.cornerWeights = mesh.cornerSharpness.data();
+        descriptor.numHoles = int(mesh.holes.size());
+        descriptor.holeIndices = mesh.holes.data();
+        for (std::size_t i = 0; i < mesh.channelValues.size(); ++i) {
+            Far::TopologyDescriptor::FVarChannel channel;
+            channel.numValues = mesh.numChannelValues[i];
+            channel.valueIndices = mesh.channelValues[i].data();
+            channels.push_back(channel);
+        }
+        descriptor.numFVarChannels = int(channels.size());
+        descriptor.fvarChannels = channels.data();
+    }
+};
 
 /// \brief Takes a number of the type T, \p typeName to Python.
 ///
@@ -210,6 +216,20 @@ T takeNumber(py::object const &object, char const *name, char const *typeName) {
     }
 }
 
+/// Makes level 0, without the interpreter's lock.
+std::shared_ptr<Refiner> makeRefiner(BaseMesh mesh, CallStatus *status) {
+    std::unique_ptr<TopologyRefiner> refiner;
+    {
+        py::gil_scoped_release const release;
+        TopologyRefinerFactory::Options options;
+        options.hexSchemeOptions = mesh.hexSchemeOptions;
+        refiner = TopologyRefinerFactory::Create(Description(mesh).descriptor, mesh.sdcOptions,
+                                                 options, status);
+    }
+    RaiseUnlessOk(*status);
+    return std::make_shared<Refiner>(std::move(refiner), std::move(mesh));
+}
+
 std::shared_ptr<Refiner>
 createRefiner(py::object const &faces, py::object const &numVertices, py::object const &faceOffsets,
               py::object const &creases, py::object const &corners, py::object const &holes,
@@ -222,72 +242,177 @@ createRefiner(py::object const &faces, py::object const &numVertices, py::object
         throw py::type_error("TopologyRefiner: there is no argument '" +
                              std::string(py::str(name)) + "'");
     }
-    OpenSubdiv::Sdc::Options sdcOptions;
-    sdcOptions.SetVtxBoundaryInterpolation(
+    BaseMesh mesh;
+    mesh.sdcOptions.SetVtxBoundaryInterpolation(
         TakeEnum<OpenSubdiv::Sdc::Options::VtxBoundaryInterpolation>(vtxBoundaryInterpolation,
                                                                      "vtx_boundary_interpolation"));
-    sdcOptions.SetFVarLinearInterpolation(
+    mesh.sdcOptions.SetFVarLinearInterpolation(
         TakeEnum<OpenSubdiv::Sdc::Options::FVarLinearInterpolation>(fvarLinearInterpolation,
                                                                     "fvar_linear_interpolation"));
-    sdcOptions.SetCreasingMethod(
+    mesh.sdcOptions.SetCreasingMethod(
         TakeEnum<OpenSubdiv::Sdc::Options::CreasingMethod>(creasingMethod, "creasing_method"));
-    TopologyRefinerFactory::Options options;
-    options.hexSchemeOptions.faceMask = TakeEnum<FaceMask>(faceMask, "face_mask");
-    options.hexSchemeOptions.schemeType = TakeEnum<SchemeType>(schemeType, "scheme_type");
-    options.hexSchemeOptions.firstStep = TakeEnum<FirstStep>(firstStep, "first_step");
-
-    BaseMesh mesh;
+    mesh.hexSchemeOptions.faceMask = TakeEnum<FaceMask>(faceMask, "face_mask");
+    mesh.hexSchemeOptions.schemeType = TakeEnum<SchemeType>(schemeType, "scheme_type");
+    mesh.hexSchemeOptions.firstStep = TakeEnum<FirstStep>(firstStep, "first_step");
     if (faceOffsets.is_none()) {
         takeListOfFaces(faces, &mesh);
     } else {
         takeFlatFaces(faces, faceOffsets, &mesh);
     }
-    mesh.descriptor.numFaces = int(mesh.faceSizes.size());
-    mesh.descriptor.numVertsPerFace = mesh.faceSizes.data();
-    mesh.descriptor.vertIndicesPerFace = mesh.faceVertices.data();
     std::optional<int> givenNumVertices;
     if (!numVertices.is_none()) {
         givenNumVertices = takeNumber<int>(numVertices, "num_vertices", "an integer");
     }
-    mesh.descriptor.numVertices = findCount(mesh.faceVertices, givenNumVertices, "num_vertices");
-    mesh.descriptor.isLeftHanded = takeNumber<bool>(isLeftHanded, "is_left_handed", "a bool");
+    mesh.numVertices = findCount(mesh.faceVertices, givenNumVertices, "num_vertices");
+    mesh.isLeftHanded = takeNumber<bool>(isLeftHanded, "is_left_handed", "a bool");
     takeTags(creases, corners, holes, &mesh);
     takeChannels(fvarChannels, numFVarValues, &mesh);
 
     CallStatus status;
-    std::unique_ptr<TopologyRefiner> refiner;
-    {
-        py::gil_scoped_release const release;
-        refiner = TopologyRefinerFactory::Create(mesh.descriptor, sdcOptions, options, &status);
-    }
-    RaiseUnlessOk(status);
+    std::shared_ptr<Refiner> refiner = makeRefiner(std::move(mesh), &status);
     Warn(status);
-    return std::make_shared<Refiner>(std::move(refiner));
+    return refiner;
 }
 
-void refineCoplanar(Refiner &self, py::object const &restPositions, int level,
-                    double angleTolerance, bool closeGaps, bool fullTopologyInLastLevel) {
-    int const numVertices =
-        self.Read([](TopologyRefiner const &r) { return r.GetLevel(0).GetNumVertices(); });
-    TopologyRefiner::CoplanarOptions options(level);
-    options.angleTolerance = angleTolerance;
-    options.closeGaps = closeGaps;
-    options.fullTopologyInLastLevel = fullTopologyInLastLevel;
-    auto const refine = [&](auto const &positions) {
+template <typename REAL>
+void refineCoplanar(Refiner &self, Refinement refinement) {
+    TopologyRefiner::CoplanarOptions options(refinement.level);
+    options.angleTolerance = refinement.angleTolerance;
+    options.closeGaps = refinement.closeGaps;
+    options.fullTopologyInLastLevel = refinement.hasFullTopologyInLastLevel;
+    std::vector<REAL> const positions(refinement.restPositions.begin(),
+                                      refinement.restPositions.end());
+    self.Change(std::move(refinement), [&](TopologyRefiner &refiner, CallStatus *status) {
+        refiner.RefineCoplanar(positions.data(), options, status);
+    });
+}
+
+void refine(Refiner &self, Refinement refinement) {
+    if (!refinement.restPositions.empty()) {
+        refinement.isDouble ? refineCoplanar<double>(self, std::move(refinement))
+                            : refineCoplanar<float>(self, std::move(refinement));
+        return;
+    }
+    TopologyRefiner::UniformOptions options(refinement.level);
+    options.fullTopologyInLastLevel = refinement.hasFullTopologyInLastLevel;
+    options.faceLabels = refinement.faceLabels;
+    self.Change(std::move(refinement), [&](TopologyRefiner &refiner, CallStatus *status) {
+        refiner.RefineUniform(options, status);
+    });
+}
+
+void refineUniformly(Refiner &self, int level, bool fullTopologyInLastLevel,
+                     py::object const &faceLabels) {
+    Refinement refinement;
+    refinement.level = level;
+    refinement.hasFullTopologyInLastLevel = fullTopologyInLastLevel;
+    if (!faceLabels.is_none()) {
+        refinement.faceLabels = takeVector(faceLabels, "face_labels");
+    }
+    refine(self, std::move(refinement));
+}
+
+void refineByPositions(Refiner &self, py::object const &restPositions, int level,
+                       double angleTolerance, bool closeGaps, bool fullTopologyInLastLevel) {
+    Refinement refinement;
+    refinement.level = level;
+    refinement.hasFullTopologyInLastLevel = fullTopologyInLastLevel;
+    refinement.angleTolerance = angleTolerance;
+    refinement.closeGaps = closeGaps;
+    refinement.isDouble = IsDouble(restPositions);
+    auto const take = [&](auto const &positions) {
         if (positions.desc.length != 3) {
             throw py::value_error("rest_positions: x, y and z of each vertex are needed, the shape "
                                   "is " +
                                   DescribeShape(positions.array));
         }
-        self.Change([&](TopologyRefiner &refiner, CallStatus *status) {
-            refiner.RefineCoplanar(positions.data, options, status);
-        });
+        refinement.restPositions.assign(positions.data,
+                                        positions.data + 3 * std::size_t(positions.count));
     };
-    if (IsDouble(restPositions)) {
-        refine(TakeSource<double>(restPositions, "rest_positions", numVertices, true));
+    int const numVertices = self.GetMesh().numVertices;
+    if (refinement.isDouble) {
+        take(TakeSource<double>(restPositions, "rest_positions", numVertices, true));
     } else {
-        refine(TakeSource<float>(restPositions, "rest_positions", numVertices, true));
+        take(TakeSource<float>(restPositions, "rest_positions", numVertices, true));
     }
+    refine(self, std::move(refinement));
+}
+
+template <typename T>
+py::array_t<T> makeArray(std::vector<T> const &values) {
+    return py::array_t<T>(py::ssize_t(values.size()), values.data());
+}
+
+template <typename T>
+std::vector<T> takeState(py::handle object) {
+    auto const array = object.cast<py::array_t<T, py::array::c_style>>();
+    return std::vector<T>(array.data(), array.data() + array.size());
+}
+
+/// The state of a refiner for pickle: the mesh, and how it is refined.
+py::tuple getState(Refiner const &self) {
+    BaseMesh const &mesh = self.GetMesh();
+    py::list channels;
+    for (std::vector<int> const &values : mesh.channelValues) {
+        channels.append(makeArray(values));
+    }
+    Refinement const refinement = self.GetRefinement();
+    return py::make_tuple(
+        py::make_tuple(mesh.numVertices, mesh.isLeftHanded, makeArray(mesh.faceSizes),
+                       makeArray(mesh.faceVertices), makeArray(mesh.creaseVertices),
+                       makeArray(mesh.creaseSharpness), makeArray(mesh.cornerVertices),
+                       makeArray(mesh.cornerSharpness), makeArray(mesh.holes), channels,
+                       makeArray(mesh.numChannelValues)),
+        py::make_tuple(mesh.sdcOptions.GetVtxBoundaryInterpolation(),
+                       mesh.sdcOptions.GetFVarLinearInterpolation(),
+                       mesh.sdcOptions.GetCreasingMethod(), mesh.hexSchemeOptions.faceMask,
+                       mesh.hexSchemeOptions.schemeType, mesh.hexSchemeOptions.firstStep),
+        py::make_tuple(refinement.level, refinement.hasFullTopologyInLastLevel,
+                       makeArray(refinement.faceLabels), makeArray(refinement.restPositions),
+                       refinement.isDouble, refinement.angleTolerance, refinement.closeGaps));
+}
+
+/// A refiner of that state, with the same numbers.  It does not warn again.
+std::shared_ptr<Refiner> makeOfState(py::tuple const &state) {
+    using Sdc = OpenSubdiv::Sdc::Options;
+    py::tuple const arrays = state[0];
+    py::tuple const options = state[1];
+    py::tuple const levels = state[2];
+    BaseMesh mesh;
+    mesh.numVertices = arrays[0].cast<int>();
+    mesh.isLeftHanded = arrays[1].cast<bool>();
+    mesh.faceSizes = takeState<int>(arrays[2]);
+    mesh.faceVertices = takeState<int>(arrays[3]);
+    mesh.creaseVertices = takeState<int>(arrays[4]);
+    mesh.creaseSharpness = takeState<float>(arrays[5]);
+    mesh.cornerVertices = takeState<int>(arrays[6]);
+    mesh.cornerSharpness = takeState<float>(arrays[7]);
+    mesh.holes = takeState<int>(arrays[8]);
+    for (py::handle const values : arrays[9]) {
+        mesh.channelValues.push_back(takeState<int>(values));
+    }
+    mesh.numChannelValues = takeState<int>(arrays[10]);
+    mesh.sdcOptions.SetVtxBoundaryInterpolation(options[0].cast<Sdc::VtxBoundaryInterpolation>());
+    mesh.sdcOptions.SetFVarLinearInterpolation(options[1].cast<Sdc::FVarLinearInterpolation>());
+    mesh.sdcOptions.SetCreasingMethod(options[2].cast<Sdc::CreasingMethod>());
+    mesh.hexSchemeOptions.faceMask = options[3].cast<FaceMask>();
+    mesh.hexSchemeOptions.schemeType = options[4].cast<SchemeType>();
+    mesh.hexSchemeOptions.firstStep = options[5].cast<FirstStep>();
+    Refinement refinement;
+    refinement.level = levels[0].cast<int>();
+    refinement.hasFullTopologyInLastLevel = levels[1].cast<bool>();
+    refinement.faceLabels = takeState<int>(levels[2]);
+    refinement.restPositions = takeState<double>(levels[3]);
+    refinement.isDouble = levels[4].cast<bool>();
+    refinement.angleTolerance = levels[5].cast<double>();
+    refinement.closeGaps = levels[6].cast<bool>();
+
+    CallStatus status;
+    std::shared_ptr<Refiner> refiner = makeRefiner(std::move(mesh), &status);
+    if (refinement.level > 0) {
+        refine(*refiner, std::move(refinement));
+    }
+    return refiner;
 }
 
 template <typename T>
@@ -338,7 +463,9 @@ void BindRefiner(py::module_ &module) {
         "Integers may have any type and are copied.  Raises StatusError for a mesh that cannot be\n"
         "refined; its code, component and index say why.  Warns with StatusWarning.\n\n"
         "Threads may share a refiner.  While arrays show its levels, refining again raises\n"
-        "BufferError.")
+        "BufferError.  A copy, and a pickled refiner, is made of the same mesh and refined as far, "
+        "with\n"
+        "the same bits.")
         .def(py::init(&createRefiner), py::arg("faces"), py::arg("num_vertices") = py::none(),
              py::kw_only(), py::arg("face_offsets") = py::none(), py::arg("creases") = py::none(),
              py::arg("corners") = py::none(), py::arg("holes") = py::none(),
@@ -347,30 +474,18 @@ void BindRefiner(py::module_ &module) {
              py::arg("fvar_linear_interpolation") = "all", py::arg("creasing_method") = "uniform",
              py::arg("face_mask") = "average", py::arg("scheme_type") = "hexagonal",
              py::arg("first_step") = "none")
-        .def(
-            "refine_uniform",
-            [](Refiner &self, int level, bool fullTopologyInLastLevel,
-               py::object const &faceLabels) {
-                TopologyRefiner::UniformOptions options(level);
-                options.fullTopologyInLastLevel = fullTopologyInLastLevel;
-                if (!faceLabels.is_none()) {
-                    py::array_t<int> const labels = TakeIndices(faceLabels, "face_labels");
-                    options.faceLabels.assign(labels.data(), labels.data() + labels.size());
-                }
-                self.Change([&](TopologyRefiner &refiner, CallStatus *status) {
-                    refiner.RefineUniform(options, status);
-                });
-            },
-            "refine_uniform(level, full_topology_in_last_level=False, face_labels=None)\n\n"
-            "Refines all faces so many times, in place of earlier refinements.  The last level "
-            "has\n"
-            "face-vertices alone unless asked for more.  face_labels, integers, shape (faces,), "
-            "are\n"
-            "those that first_step 'truncate' keeps apart: every face lies in base faces of one.\n"
-            "Raises StatusError.",
-            py::arg("level"), py::arg("full_topology_in_last_level") = false,
-            py::arg("face_labels") = py::none())
-        .def("refine_coplanar", &refineCoplanar,
+        .def(py::pickle(&getState, &makeOfState))
+        .def("refine_uniform", &refineUniformly,
+             "refine_uniform(level, full_topology_in_last_level=False, face_labels=None)\n\n"
+             "Refines all faces so many times, in place of earlier refinements.  The last level "
+             "has\n"
+             "face-vertices alone unless asked for more.  face_labels, integers, shape (faces,), "
+             "are\n"
+             "those that first_step 'truncate' keeps apart: every face lies in base faces of one.\n"
+             "Raises StatusError.",
+             py::arg("level"), py::arg("full_topology_in_last_level") = false,
+             py::arg("face_labels") = py::none())
+        .def("refine_coplanar", &refineByPositions,
              "refine_coplanar(rest_positions, level, angle_tolerance=0.1, close_gaps=True,\n"
              "                full_topology_in_last_level=False)\n\n"
              "Refines as the paper's stage 3 says: edges between faces of the same normal make "
@@ -384,7 +499,8 @@ void BindRefiner(py::module_ &module) {
         .def(
             "unrefine",
             [](Refiner &self) {
-                self.Change([](TopologyRefiner &refiner, CallStatus *) { refiner.Unrefine(); });
+                self.Change(Refinement(),
+                            [](TopologyRefiner &refiner, CallStatus *) { refiner.Unrefine(); });
             },
             "unrefine()\n\nRemoves all levels but the base.")
         .def(
@@ -392,12 +508,16 @@ void BindRefiner(py::module_ &module) {
             [](std::shared_ptr<Refiner> const &self, int level) { return Level(self, level); },
             "get_level(level)\n\nThe TopologyLevel of that depth, 0 ... max_level.",
             py::arg("level"))
-        .def_property_readonly("num_levels", property(&TopologyRefiner::GetNumLevels))
-        .def_property_readonly("max_level", property(&TopologyRefiner::GetMaxLevel))
+        .def_property_readonly("num_levels", property(&TopologyRefiner::GetNumLevels),
+                               "Levels, with level 0.")
+        .def_property_readonly("max_level", property(&TopologyRefiner::GetMaxLevel),
+                               "The last level.")
         .def_property_readonly("is_uniform", property(&TopologyRefiner::IsUniform),
                                "False after refine_coplanar.")
-        .def_property_readonly("has_holes", property(&TopologyRefiner::HasHoles))
-        .def_property_readonly("num_fvar_channels", property(&TopologyRefiner::GetNumFVarChannels))
+        .def_property_readonly("has_holes", property(&TopologyRefiner::HasHoles),
+                               "Whether faces are holes.")
+        .def_property_readonly("num_fvar_channels", property(&TopologyRefiner::GetNumFVarChannels),
+                               "Face-varying channels.")
         .def_property_readonly("num_vertices_total",
                                property(&TopologyRefiner::GetNumVerticesTotal),
                                "Sum over all levels.")
@@ -433,30 +553,40 @@ void BindRefiner(py::module_ &module) {
                 return self.Read([](TopologyRefiner const &refiner) {
                     return refiner.GetSchemeOptions().GetVtxBoundaryInterpolation();
                 });
-            })
-        .def_property_readonly("creasing_method",
-                               [](Refiner const &self) -> Sdc::CreasingMethod {
-                                   return self.Read([](TopologyRefiner const &refiner) {
-                                       return refiner.GetSchemeOptions().GetCreasingMethod();
-                                   });
-                               })
-        .def_property_readonly("face_mask",
-                               [](Refiner const &self) {
-                                   return self.Read([](TopologyRefiner const &refiner) {
-                                       return refiner.GetHexSchemeOptions().faceMask;
-                                   });
-                               })
-        .def_property_readonly("scheme_type",
-                               [](Refiner const &self) {
-                                   return self.Read([](TopologyRefiner const &refiner) {
-                                       return refiner.GetHexSchemeOptions().schemeType;
-                                   });
-                               })
-        .def_property_readonly("first_step", [](Refiner const &self) {
-            return self.Read([](TopologyRefiner const &refiner) {
-                return refiner.GetHexSchemeOptions().firstStep;
-            });
-        });
+            },
+            "The VtxBoundaryInterpolation that was given.")
+        .def_property_readonly(
+            "creasing_method",
+            [](Refiner const &self) -> Sdc::CreasingMethod {
+                return self.Read([](TopologyRefiner const &refiner) {
+                    return refiner.GetSchemeOptions().GetCreasingMethod();
+                });
+            },
+            "The CreasingMethod that was given.")
+        .def_property_readonly(
+            "face_mask",
+            [](Refiner const &self) {
+                return self.Read([](TopologyRefiner const &refiner) {
+                    return refiner.GetHexSchemeOptions().faceMask;
+                });
+            },
+            "The FaceMask that was given.")
+        .def_property_readonly(
+            "scheme_type",
+            [](Refiner const &self) {
+                return self.Read([](TopologyRefiner const &refiner) {
+                    return refiner.GetHexSchemeOptions().schemeType;
+                });
+            },
+            "The SchemeType that was given.")
+        .def_property_readonly(
+            "first_step",
+            [](Refiner const &self) {
+                return self.Read([](TopologyRefiner const &refiner) {
+                    return refiner.GetHexSchemeOptions().firstStep;
+                });
+            },
+            "The FirstStep that was given.");
 }
 
 } // namespace OpenSubdivHex::Python

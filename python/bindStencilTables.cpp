@@ -343,12 +343,14 @@ void bindTable(py::module_ &module) {
             "num_stencils",
             [](StencilTable const &self) {
                 return visit(self, [](auto const &table) { return table.GetNumStencils(); });
-            })
+            },
+            "Rows of the table, one for each refined vertex or value.")
         .def_property_readonly(
             "num_control_vertices",
             [](StencilTable const &self) {
                 return visit(self, [](auto const &table) { return table.GetNumControlVertices(); });
-            })
+            },
+            "Control vertices, or values, that stencils refer to.")
         .def_property_readonly(
             "sizes", show([](auto const &table) -> decltype(auto) { return (table.GetSizes()); }),
             "int32, shape (stencils,), a view: of how many elements each stencil is the sum.")
@@ -395,7 +397,8 @@ void bindLimitTable(py::module_ &module) {
              py::arg("generate_vertices") = true, py::arg("generate_further_sides") = false,
              py::arg("generate_face_centers") = false, py::arg("generate_1st_derivatives") = true,
              py::arg("factorize_intermediate_levels") = true, py::arg("dtype") = "float32")
-        .def_readonly("has_derivatives", &LimitStencilTable::hasDerivatives)
+        .def_readonly("has_derivatives", &LimitStencilTable::hasDerivatives,
+                      "Whether there are weights of both first derivatives.")
         .def_property_readonly(
             "du_weights", [](py::object const &self) { return showWeights(self, 1); },
             "float32 or float64, shape (weights,), a view: of the derivative du.")
@@ -432,10 +435,14 @@ void bindCompactTable(py::module_ &module) {
                      const_cast<CompactStencilTable *>(compact.release()));
              }),
              py::arg("table"))
-        .def_property_readonly("num_stencils", &CompactStencilTable::GetNumStencils)
-        .def_property_readonly("num_control_vertices", &CompactStencilTable::GetNumControlVertices)
-        .def_property_readonly("num_blocks", &CompactStencilTable::GetNumBlocks)
-        .def_property_readonly("num_bytes", &CompactStencilTable::GetNumBytes, "Of all arrays.");
+        .def_property_readonly("num_stencils", &CompactStencilTable::GetNumStencils,
+                               "Rows of the table.")
+        .def_property_readonly("num_control_vertices", &CompactStencilTable::GetNumControlVertices,
+                               "Control vertices, or values, that stencils refer to.")
+        .def_property_readonly("num_blocks", &CompactStencilTable::GetNumBlocks,
+                               "Groups of stencils that are evaluated together.")
+        .def_property_readonly("num_bytes", &CompactStencilTable::GetNumBytes,
+                               "Memory of all arrays.");
 }
 
 } // namespace

@@ -2,10 +2,8 @@
 #include "arrays.h"
 #include "errors.h"
 #include "options.h"
-#include "refiner.h"
+#include "surfaces.h"
 
-#include "bfr_ext/levelTessellation.h"
-#include "bfr_ext/surfaceFactory.h"
 #include "bfr_ext/surfacePlaces.h"
 #include "far_ext/stencilTableFactory.h"
 
@@ -20,72 +18,34 @@ using BfrExt::LevelTessellation;
 using Points = py::array_t<double>;
 using PointDescriptor = BfrExt::Surface<double>::PointDescriptor;
 
-/// A tessellation of a face, as arrays.
-class FaceTessellation {
-public:
-    FaceTessellation(int faceSize, py::object const &levels, int facetSize)
-        : _tessellation(make(faceSize, levels, facetSize)) {}
-
-    LevelTessellation const &Get() const { return _tessellation; }
-
-    std::vector<int> GetLevels() const {
-        std::vector<int> levels(std::size_t(_tessellation.GetFaceSize()) + 1);
-        _tessellation.GetLevels(levels.data());
-        return levels;
+FaceTessellation makeTessellation(int faceSize, py::object const &levels, int facetSize) {
+    if (faceSize < 3) {
+        throw py::value_error("face_size: " + std::to_string(faceSize) + " is less than 3");
     }
-    Points GetCoords() const {
-        Points coords({py::ssize_t(_tessellation.GetNumCoords()), py::ssize_t(2)});
-        _tessellation.GetCoords(coords.mutable_data());
-        return coords;
+    std::vector<int> numbers;
+    if (py::isinstance<py::int_>(levels)) {
+        numbers.push_back(levels.cast<int>());
+    } else {
+        py::array_t<int> const array = TakeIndices(levels, "levels");
+        numbers.assign(array.data(), array.data() + array.size());
     }
-    py::array_t<int> GetFacetSizes() const {
-        std::vector<int> sizes(std::size_t(_tessellation.GetNumFacets()));
-        _tessellation.GetFacetSizes(sizes.data());
-        return TakeOver(std::move(sizes));
+    int const count = int(numbers.size());
+    if (count != 1 && count != faceSize && count != faceSize + 1) {
+        throw py::value_error("levels: " + std::to_string(count) + " of them, not 1, " +
+                              std::to_string(faceSize) + " or " + std::to_string(faceSize + 1));
     }
-    py::array_t<int> GetFacets() const {
-        int const stride = _tessellation.GetFacetStride();
-        int const numFacets = _tessellation.GetNumFacets();
-        std::vector<int> facets(
-            std::size_t(stride > 0 ? stride * numFacets : _tessellation.GetNumFacetVertices()));
-        _tessellation.GetFacets(facets.data());
-        py::array_t<int> array = TakeOver(std::move(facets));
-        return stride > 0 ? array.reshape({numFacets, stride}) : array;
+    for (int const level : numbers) {
+        if (level < 0 || level > LevelTessellation::kLastLevel) {
+            throw py::value_error("levels: " + std::to_string(level) + " is not one of 0 ... " +
+                                  std::to_string(LevelTessellation::kLastLevel));
+        }
     }
-
-private:
-    static LevelTessellation make(int faceSize, py::object const &levels, int facetSize) {
-        if (faceSize < 3) {
-            throw py::value_error("face_size: " + std::to_string(faceSize) + " is less than 3");
-        }
-        std::vector<int> numbers;
-        if (py::isinstance<py::int_>(levels)) {
-            numbers.push_back(levels.cast<int>());
-        } else {
-            py::array_t<int> const array = TakeIndices(levels, "levels");
-            numbers.assign(array.data(), array.data() + array.size());
-        }
-        int const count = int(numbers.size());
-        if (count != 1 && count != faceSize && count != faceSize + 1) {
-            throw py::value_error("levels: " + std::to_string(count) + " of them, not 1, " +
-                                  std::to_string(faceSize) + " or " + std::to_string(faceSize + 1));
-        }
-        for (int const level : numbers) {
-            if (level < 0 || level > LevelTessellation::kLastLevel) {
-                throw py::value_error("levels: " + std::to_string(level) + " is not one of 0 ... " +
-                                      std::to_string(LevelTessellation::kLastLevel));
-            }
-        }
-        if (facetSize != 0 && facetSize != 3 && facetSize != 4) {
-            throw py::value_error("facet_size: " + std::to_string(facetSize) + " is not 3, 4 or 0");
-        }
-        py::gil_scoped_release const release;
-        return LevelTessellation(BfrExt::Parameterization(faceSize), count, numbers.data(),
-                                 LevelTessellation::Options().SetFacetSize(facetSize));
-    }
-
-    LevelTessellation _tessellation;
-};
+    CheckFacetSize(facetSize);
+    py::gil_scoped_release const release;
+    return FaceTessellation(
+        LevelTessellation(BfrExt::Parameterization(faceSize), count, numbers.data(),
+                          LevelTessellation::Options().SetFacetSize(facetSize)));
+}
 
 /// Pairs of u and v: \p count, or any number for -1.
 std::vector<double> takePlaces(py::object const &uv, int count = -1) {
@@ -231,75 +191,45 @@ private:
     int _numMeshPoints;
 };
 
-/// BfrExt::SurfaceFactory, which keeps the refiner.
-class FaceSurfaceFactory {
-public:
-    explicit FaceSurfaceFactory(std::shared_ptr<Refiner> refiner) : _refiner(std::move(refiner)) {
-        FarExt::CallStatus status;
-        _refiner->Read([&](FarExt::TopologyRefiner const &base) {
-            _factory = BfrExt::SurfaceFactory::Create(base, &status);
-        });
-        RaiseUnlessOk(status);
-    }
+bool hasLimitSurface(FaceSurfaceFactory const &self, int face) {
+    CheckIndex(face, self.GetNumFaces(), "face");
+    return self.Read([&](BfrExt::SurfaceFactory const &factory) {
+        FarExt::CallStatus ignored;
+        return factory.FaceHasLimitSurface(face, &ignored);
+    });
+}
 
-    bool HasLimitSurface(int face) const {
-        checkFace(face);
-        FarExt::CallStatus status;
-        bool const hasSurface = _refiner->Read([&](FarExt::TopologyRefiner const &) {
-            return _factory->FaceHasLimitSurface(face, &status);
-        });
-        if (status.GetComponentType() != FarExt::ComponentType::Face) {
-            RaiseUnlessOk(status); // the refiner is no longer what it was
-        }
-        return hasSurface;
-    }
-    int GetNumFaces() const { return _factory->GetNumFaces(); }
-    int GetNumFVarChannels() const { return _factory->GetNumFVarChannels(); }
-    /// Points of the mesh: vertices, or values of \p channel, which is in range.
-    int CountVertices() const { return _factory->GetLevel().GetNumVertices(); }
-    int CountValues(int channel) const {
-        return _refiner->Read([&](FarExt::TopologyRefiner const &) {
-            return _factory->GetLevel().GetNumFVarValues(channel);
-        });
-    }
-    /// Calls function(factory) without the interpreter's lock, while no thread refines.
-    template <typename FUNCTION>
-    void Read(FUNCTION const &function) const {
-        _refiner->Read([&](FarExt::TopologyRefiner const &) { function(*_factory); });
-    }
+template <typename INIT>
+FaceSurface makeSurface(FaceSurfaceFactory const &self, int face, int numMeshPoints,
+                        INIT const &init) {
+    CheckIndex(face, self.GetNumFaces(), "face");
+    BfrExt::Surface<double> surface;
+    FarExt::CallStatus status;
+    self.Read(
+        [&](BfrExt::SurfaceFactory const &factory) { return init(factory, &surface, &status); });
+    RaiseUnlessOk(status);
+    return {std::move(surface), numMeshPoints};
+}
 
-    FaceSurface MakeVertexSurface(int face) const {
-        return make(face, CountVertices(), [&](auto *surface, FarExt::CallStatus *status) {
-            _factory->InitVertexSurface(face, surface, status);
-        });
-    }
-    FaceSurface MakeVaryingSurface(int face) const {
-        return make(face, CountVertices(), [&](auto *surface, FarExt::CallStatus *status) {
-            _factory->InitVaryingSurface(face, surface, status);
-        });
-    }
-    FaceSurface MakeFaceVaryingSurface(int face, int channel) const {
-        CheckIndex(channel, _factory->GetNumFVarChannels(), "channel");
-        return make(face, CountValues(channel), [&](auto *surface, FarExt::CallStatus *status) {
-            _factory->InitFaceVaryingSurface(face, surface, channel, status);
-        });
-    }
-
-private:
-    void checkFace(int face) const { CheckIndex(face, _factory->GetNumFaces(), "face"); }
-    template <typename INIT>
-    FaceSurface make(int face, int numMeshPoints, INIT const &init) const {
-        checkFace(face);
-        BfrExt::Surface<double> surface;
-        FarExt::CallStatus status;
-        Read([&](BfrExt::SurfaceFactory const &) { init(&surface, &status); });
-        RaiseUnlessOk(status);
-        return {std::move(surface), numMeshPoints};
-    }
-
-    std::shared_ptr<Refiner> _refiner;
-    std::unique_ptr<BfrExt::SurfaceFactory> _factory;
-};
+FaceSurface makeVertexSurface(FaceSurfaceFactory const &self, int face) {
+    return makeSurface(self, face, self.CountVertices(),
+                       [&](auto const &factory, auto *surface, auto *status) {
+                           return factory.InitVertexSurface(face, surface, status);
+                       });
+}
+FaceSurface makeVaryingSurface(FaceSurfaceFactory const &self, int face) {
+    return makeSurface(self, face, self.CountVertices(),
+                       [&](auto const &factory, auto *surface, auto *status) {
+                           return factory.InitVaryingSurface(face, surface, status);
+                       });
+}
+FaceSurface makeFaceVaryingSurface(FaceSurfaceFactory const &self, int face, int channel) {
+    CheckIndex(channel, self.GetNumFVarChannels(), "channel");
+    return makeSurface(self, face, self.CountValues(channel),
+                       [&](auto const &factory, auto *surface, auto *status) {
+                           return factory.InitFaceVaryingSurface(face, surface, channel, status);
+                       });
+}
 
 /// BfrExt::SurfacePlaces, and how many points its mesh has.
 class Places {
@@ -372,22 +302,51 @@ private:
 
 } // namespace
 
+void CheckFacetSize(int size) {
+    if (size != 0 && size != 3 && size != 4) {
+        throw py::value_error("facet_size: " + std::to_string(size) + " is not 3, 4 or 0");
+    }
+}
+
 void BindSurfaces(py::module_ &module) {
     py::class_<FaceTessellation>(
         module, "LevelTessellation",
         "LevelTessellation(face_size, levels, facet_size=3)\n\n"
-        "A base face cut into facets, whose neighbours fit if both take the same level for the\n"
-        "edge that they share.\n\n"
-        "levels is one of 0 ... 12 for all; or one for each edge, edge i from vertex i to the "
-        "next;\nor those of the edges and that of the inside.  facet_size is 3 for triangles, 4 "
-        "for cells as\nthey are, with -1 behind triangles, where all are quads, or 0 for polygons.")
-        .def(py::init<int, py::object, int>(), py::arg("face_size"), py::arg("levels"),
+        "A base face cut into facets.  Two faces fit if they take the same level for their common "
+        "edge.\n\n"
+        "Args:\n"
+        "    face_size: vertices of the face\n"
+        "    levels: 0 ... 12: one for all; or one for each edge, edge i from vertex i to the "
+        "next; "
+        "or\n"
+        "        those of the edges, then that of the inside\n"
+        "    facet_size: 3 for triangles; 4 for quads, where all cells are quads, else triangles "
+        "with -1\n"
+        "        behind them; 0 for polygons")
+        .def(py::init(&makeTessellation), py::arg("face_size"), py::arg("levels"),
              py::arg("facet_size") = 3)
+        .def(py::pickle(
+            [](FaceTessellation const &self) {
+                std::vector<int> levels = self.GetLevels();
+                if (levels.empty() || self.Get().GetNumSections() > 1) {
+                    throw py::type_error("a LevelTessellation of a CellForest, or of a section of "
+                                         "a face, cannot be pickled");
+                }
+                return py::make_tuple(self.Get().GetFaceSize(), std::move(levels),
+                                      self.Get().GetFacetSize());
+            },
+            [](py::tuple const &state) {
+                return makeTessellation(state[0].cast<int>(), state[1], state[2].cast<int>());
+            }))
         .def_property_readonly(
             "face_size", [](FaceTessellation const &self) { return self.Get().GetFaceSize(); },
             "Vertices of the face.")
-        .def_property_readonly("levels", &FaceTessellation::GetLevels,
-                               "Those of the edges, then that of the inside.")
+        .def_property_readonly(
+            "levels", &FaceTessellation::GetLevels,
+            "Levels of the edges, then the level of the inside; empty for a face of a CellForest.")
+        .def_property_readonly(
+            "facet_size", [](FaceTessellation const &self) { return self.Get().GetFacetSize(); },
+            "3 for triangles, 4 for quads and triangles, 0 for polygons.")
         .def_property_readonly("coords", &FaceTessellation::GetCoords,
                                "float64 of the shape (places, 2): u and v, those of the boundary "
                                "first, from vertex 0 on.")
@@ -404,13 +363,13 @@ void BindSurfaces(py::module_ &module) {
     py::class_<FaceSurface>(
         module, "Surface",
         "The limit surface of a base face, made by a SurfaceFactory: a function of u and v.\n\n"
-        "Points are those of the mesh, numbers of the shape (points,) or (points, length): "
-        "float32\n"
-        "and float64 are read in place.  Results are float64.  uv is of the shape (places, 2), or "
-        "a\n"
-        "LevelTessellation.  At a (u, v) they are those of bicubic patches, some millionths of the "
-        "size\n"
-        "of the mesh from the surface; those of a LevelTessellation, and stencils, are exact.")
+        "Points of the mesh have the shape (points,) or (points, length); float32 and float64 are "
+        "read\n"
+        "in place.  uv has the shape (places, 2), or is a LevelTessellation.  Results are "
+        "float64.\n\n"
+        "Points of a LevelTessellation, and stencils, are exact.  Points at a (u, v) lie on "
+        "bicubic\n"
+        "patches, some millionths of the mesh's size from the surface.")
         .def_property_readonly("face_size", &FaceSurface::GetFaceSize, "Vertices of the face.")
         .def_property_readonly("control_points", &FaceSurface::GetControlPoints,
                                "int32: the points of the mesh that it depends on, those of the "
@@ -436,44 +395,50 @@ void BindSurfaces(py::module_ &module) {
              "surface lies.",
              py::arg("points"));
 
-    py::class_<FaceSurfaceFactory>(
+    py::class_<FaceSurfaceFactory, std::shared_ptr<FaceSurfaceFactory>>(
         module, "SurfaceFactory",
         "SurfaceFactory(refiner)\n\n"
-        "Makes the limit surfaces of the faces of level 0, for which the refiner need not be\n"
-        "refined.  Behind a first step they are those of level 1: the refiner has to be refined "
+        "Makes the limit surfaces of the faces of level 0.  The refiner needs no refinement.\n\n"
+        "Behind a first step the faces, and the points of the mesh, are those of level 1: refine "
         "to\n"
-        "it with full topology, and not again, and points are those of level 1.  Raises "
-        "StatusError\n"
-        "where it is not, and where levels are not made by hexagonal steps.")
+        "it with full topology before.  Once the refiner refines again, the factory raises\n"
+        "RuntimeError.\n\n"
+        "Raises StatusError where level 1 is missing, and for levels that are not made by "
+        "hexagonal\n"
+        "steps.")
         .def(py::init<std::shared_ptr<Refiner>>(), py::arg("refiner").none(false))
-        .def("has_limit_surface", &FaceSurfaceFactory::HasLimitSurface,
-             "has_limit_surface(face)\n\nFalse for holes and, with boundary 'none', for faces at "
-             "a boundary.",
+        .def_property_readonly("num_faces", &FaceSurfaceFactory::GetNumFaces,
+                               "Faces that may have surfaces.")
+        .def("has_limit_surface", &hasLimitSurface,
+             "has_limit_surface(face)\n\nFalse for holes, with boundary 'none' for faces at a "
+             "boundary, and for faces that depend on\ntoo many others: vertex_surface() says why.",
              py::arg("face"))
-        .def("vertex_surface", &FaceSurfaceFactory::MakeVertexSurface,
+        .def("vertex_surface", &makeVertexSurface,
              "vertex_surface(face)\n\nThe Surface of vertex data.  Raises StatusError where the "
              "face has none.",
              py::arg("face"))
-        .def("varying_surface", &FaceSurfaceFactory::MakeVaryingSurface,
-             "varying_surface(face)\n\nThe same of varying data.", py::arg("face"))
-        .def("face_varying_surface", &FaceSurfaceFactory::MakeFaceVaryingSurface,
-             "face_varying_surface(face, channel=0)\n\nThe same of face-varying data, whose "
-             "points are values.",
+        .def("varying_surface", &makeVaryingSurface,
+             "varying_surface(face)\n\nThe Surface of varying data.", py::arg("face"))
+        .def("face_varying_surface", &makeFaceVaryingSurface,
+             "face_varying_surface(face, channel=0)\n\nThe Surface of face-varying data, "
+             "whose points are values of the channel.",
              py::arg("face"), py::arg("channel") = 0);
 
     py::class_<Places>(
         module, "SurfacePlaces",
         "SurfacePlaces(factory, faces, uv, *, interpolation_mode='vertex', fvar_channel=0)\n\n"
-        "Places of any faces, in any order, that are evaluated together, frame after frame, on as\n"
-        "many threads as set_num_threads or OpenMP say: ray hits, samples, roots of hair.  The\n"
-        "factory need not live on.  Points are those of Surface.evaluate at (u, v).\n\n"
+        "Evaluates points of any faces, in any order, together, frame after frame, on as many "
+        "threads\n"
+        "as set_num_threads or OpenMP say: ray hits, samples, roots of hair.  The factory need not "
+        "live\n"
+        "on.  Points have the bits of Surface.evaluate at (u, v).\n\n"
         "Args:\n"
         "    factory: a SurfaceFactory\n"
         "    faces: integers, shape (places,)\n"
         "    uv: u and v of each place in its face, shape (places, 2); moved to the boundary of\n"
         "        the face where they are outside\n"
         "    interpolation_mode: 'vertex', 'varying' or 'face_varying'\n"
-        "    fvar_channel: of face-varying points, which are values of this channel\n\n"
+        "    fvar_channel: with 'face_varying' the channel, whose values are the points\n\n"
         "Raises IndexError for a face out of range and ValueError for uv that are not finite, "
         "which\n"
         "name the row, and StatusError for a face without a surface.")

@@ -21,4 +21,5 @@ PYBIND11_MODULE(_opensubdivhex, module) {
     BindPatches(module);
     BindEvaluators(module);
     BindSurfaces(module);
+    BindStreams(module);
 }

@@ -48,7 +48,7 @@ void bindEnums(py::module_ &module) {
         .value("NONE", Sdc::VTX_BOUNDARY_NONE, "The paper's: the border moves inward.")
         .value("EDGE_ONLY", Sdc::VTX_BOUNDARY_EDGE_ONLY, "A smooth border curve.")
         .value("EDGE_AND_CORNER", Sdc::VTX_BOUNDARY_EDGE_AND_CORNER,
-               "The same, and vertices with one face stay.");
+               "A smooth border curve; vertices with one face stay.");
     py::enum_<Sdc::FVarLinearInterpolation>(module, "FVarLinearInterpolation",
                                             "Where face-varying data are interpolated linearly.")
         .value("NONE", Sdc::FVAR_LINEAR_NONE)

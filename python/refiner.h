@@ -16,22 +16,55 @@
 #include <shared_mutex>
 #include <string>
 #include <utility>
+#include <vector>
 
 namespace OpenSubdivHex::Python {
 
 namespace py = pybind11;
 
+/// A base mesh as it was given: arrays for a Far::TopologyDescriptor to refer to, and the options.
+struct BaseMesh {
+    int numVertices = 0;
+    bool isLeftHanded = false;
+    std::vector<int> faceSizes;
+    std::vector<int> faceVertices;
+    std::vector<int> creaseVertices;
+    std::vector<float> creaseSharpness;
+    std::vector<int> cornerVertices;
+    std::vector<float> cornerSharpness;
+    std::vector<int> holes;
+    std::vector<std::vector<int>> channelValues;
+    std::vector<int> numChannelValues;
+    OpenSubdiv::Sdc::Options sdcOptions;
+    FarExt::HexSchemeOptions hexSchemeOptions;
+};
+
+/// The arguments of the last call that refined.
+struct Refinement {
+    int level = 0;
+    bool hasFullTopologyInLastLevel = false;
+    std::vector<int> faceLabels; ///< of a uniform one
+    /// Of a coplanar one: floats or, if isDouble, doubles; else empty.
+    std::vector<double> restPositions;
+    bool isDouble = false;
+    double angleTolerance = 0;
+    bool closeGaps = true;
+};
+
 /// \brief A FarExt::TopologyRefiner as Python shares it: between threads, and with arrays that show
 /// its levels.
 ///
 /// Python cannot promise that nobody uses a level while another thread refines, so there is a lock.
-/// It is never held by a thread that waits for the interpreter's lock.  Arrays that show a level
-/// are counted; while there are any, the levels cannot change, as a bytearray cannot that a
-/// memoryview shows.
+/// It is never held by a thread that waits for the interpreter's lock.  Arrays that show a level, and
+/// streams that call Python while they read it, are counted; while there are any, the levels cannot change, as a bytearray
+/// cannot that a memoryview shows.
 class Refiner : public std::enable_shared_from_this<Refiner> {
 public:
-    explicit Refiner(std::unique_ptr<FarExt::TopologyRefiner> refiner)
-        : _refiner(std::move(refiner)) {}
+    Refiner(std::unique_ptr<FarExt::TopologyRefiner> refiner, BaseMesh mesh)
+        : _refiner(std::move(refiner)), _mesh(std::move(mesh)) {}
+
+    /// The mesh that level 0 was made of.
+    BaseMesh const &GetMesh() const { return _mesh; }
 
     /// \brief Calls function(refiner) without the interpreter's lock, while no thread refines.
     ///
@@ -44,45 +77,74 @@ public:
         return function(refiner);
     }
 
-    /// \brief Calls function(refiner, &status), which changes the levels, without the interpreter's
-    /// lock.
+    /// The refinement that made the levels; of level 0 where there are no others.
+    Refinement GetRefinement() const {
+        return Read([this](FarExt::TopologyRefiner const &refiner) {
+            return refiner.GetMaxLevel() > 0 ? _refinement : Refinement();
+        });
+    }
+
+    /// \brief Calls function(refiner, &status), which changes the levels as \p refinement says, without the
+    /// interpreter's lock.
     ///
     /// Raises BufferError while arrays show them, StatusError when the status is not Ok.
     template <typename FUNCTION>
-    void Change(FUNCTION const &function) {
+    void Change(Refinement refinement, FUNCTION const &function) {
         FarExt::CallStatus status;
         {
             py::gil_scoped_release const release;
             std::unique_lock const lock(_mutex);
-            if (_numViews != 0) {
-                throw py::buffer_error("arrays show the levels of this refiner, which cannot "
-                                       "change as long as they do: "
-                                       "delete the arrays, or copy them before");
+            if (_numHolds != 0) {
+                throw py::buffer_error("the levels of this refiner cannot change while arrays show "
+                                       "them or a stream reads them: delete the arrays, or copy "
+                                       "them before");
             }
             function(*_refiner, &status);
+            if (status.IsOk()) {
+                _refinement = std::move(refinement);
+            }
         }
         RaiseUnlessOk(status);
     }
 
-    /// An object that keeps this refiner, and its levels as they are, for an array to own.
+    /// \brief Keeps a refiner, and its levels as they are: Change() raises BufferError meanwhile.
+    ///
+    /// Needs neither the interpreter's lock nor that of the refiner.  Levels that are looked for afterwards, by Read(),
+    /// stay where they are.
+    class Hold {
+    public:
+        explicit Hold(std::shared_ptr<Refiner const> refiner) : _refiner(std::move(refiner)) {
+            ++_refiner->_numHolds;
+        }
+        Hold(Hold &&other) noexcept : _refiner(std::move(other._refiner)) {}
+        ~Hold() {
+            if (_refiner) {
+                --_refiner->_numHolds;
+            }
+        }
+
+        Hold &operator=(Hold &&) = delete;
+        Hold(Hold const &) = delete;
+        Hold &operator=(Hold const &) = delete;
+
+    private:
+        std::shared_ptr<Refiner const> _refiner;
+    };
+
+    /// An object that holds the levels, for an array to own.
     py::capsule Pin() const {
-        struct Share {
-            std::shared_ptr<Refiner const> refiner;
-        };
-        auto share = std::make_unique<Share>(Share{shared_from_this()});
-        py::capsule const pin(share.get(), [](void *memory) {
-            std::unique_ptr<Share> const released(static_cast<Share *>(memory));
-            --released->refiner->_numViews;
-        });
-        share.release();
-        ++_numViews;
+        auto hold = std::make_unique<Hold>(shared_from_this());
+        py::capsule const pin(hold.get(), [](void *memory) { delete static_cast<Hold *>(memory); });
+        hold.release();
         return pin;
     }
 
 private:
     std::unique_ptr<FarExt::TopologyRefiner> _refiner;
+    BaseMesh const _mesh;
+    Refinement _refinement;
     mutable std::shared_mutex _mutex;
-    mutable std::atomic<int> _numViews{0};
+    mutable std::atomic<int> _numHolds{0};
 };
 
 /// \brief A level as Python refers to it: it is asked for whenever it is used, and is out of date
@@ -138,6 +200,7 @@ void BindStencilTables(py::module_ &module);
 void BindPatches(py::module_ &module);
 void BindEvaluators(py::module_ &module);
 void BindSurfaces(py::module_ &module);
+void BindStreams(py::module_ &module);
 
 } // namespace OpenSubdivHex::Python
 

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <functional>
 #include <limits>
 
 namespace OpenSubdivHex::BfrExt::internal {
@@ -57,7 +58,7 @@ bool isInLattice(LimitPatch const &patch) {
     int const valence = CellType::GetLatticeValence(faceSize);
     auto const isSame = [&](int size) { return size == faceSize; };
     if (valence == 0 || !std::all_of(patch.faceSizes.begin(), patch.faceSizes.end(), isSame) ||
-        isSharp(patch) || !patch.sectorCorners.empty()) {
+        isSharp(patch) || !patch.sectorCorners.empty() || !patch.quadCorners.empty()) {
         return false;
     }
     // Vertices where the patch ends have fewer faces.
@@ -118,13 +119,17 @@ struct Projection {
 
 } // namespace
 
+std::size_t GetCellHeapSize(CellPatch const &cell) {
+    LimitPatch const &patch = cell.patch;
+    return GetHeapSizes(cell.locals, cell.corners, patch.sources, patch.faceSizes, patch.faceVerts,
+                        patch.otherCorners, patch.edgeSharpness, patch.diagonalSharpness,
+                        patch.vertSharpness, patch.signature);
+}
+
 CellType::CellType(CellTypes &types, CellPatch cell, CellRules const &rules)
     : _types(types), _cell(std::move(cell)), _numPoints(int(_cell.patch.sources.size())),
-      _isInLattice(isInLattice(_cell.patch)), _isSharp(isSharp(_cell.patch)), _rules(rules) {
-    if (_isInLattice && IsWhole()) {
-        _foundItems = std::make_unique<FoundItems>();
-    }
-}
+      _isInLattice(isInLattice(_cell.patch)), _isSharp(isSharp(_cell.patch)), _rules(rules),
+      _borderItems(types.GetMemory()), _patterns(types.GetMemory()) {}
 
 std::vector<CellType::Child> const &CellType::GetChildren() const {
     std::call_once(_onceChildren, [&] {
@@ -140,6 +145,7 @@ std::vector<CellType::Child> const &CellType::GetChildren() const {
             _step = StepMatrix(refinement.step);
         }
         _children = std::move(children);
+        GetMemory().Add(GetHeapSizes(_children, _step));
     });
     return _children;
 }
@@ -161,9 +167,7 @@ std::vector<Vector> const &CellType::GetCornerPoints() const {
                 points.back()[std::size_t(vert)] = 1;
             }
         } else {
-            std::vector<CornerLimit> limits = _types.UseMasks(
-                _rules, [&](LimitMaskFinder &finder) { return FindCornerLimits(_cell, finder); });
-            for (CornerLimit &limit : limits) {
+            for (CornerLimit &limit : _types.FindLimits(_cell, _rules)) {
                 points.push_back(std::move(limit.weights));
                 if (_cell.kind == CellKind::Whole || _cell.kind == CellKind::Half) {
                     tangents.push_back(std::move(limit.tangents));
@@ -172,6 +176,11 @@ std::vector<Vector> const &CellType::GetCornerPoints() const {
         }
         _points = std::move(points);
         _tangents = std::move(tangents);
+        std::size_t size = internal::GetHeapSize(_points);
+        for (LimitMask::Tangents const &ofCorner : _tangents) {
+            size += sizeof(ofCorner) + GetHeapSizes(ofCorner.du, ofCorner.dv);
+        }
+        GetMemory().Add(size);
         if (IsVertex()) {
             _cell.patch = {};
         }
@@ -314,32 +323,26 @@ CellType::BorderItem const &CellType::GetBorderItem(int const *turns, std::size_
     auto const get = [&](std::size_t i, auto const &make) -> BorderItem const & {
         return _borderItems.Get<BorderItem>(int(i), turns + i, turns + i + 1, make);
     };
-    auto const find = [&]() -> BorderItem const & {
-        return get(item, [&] {
-            // The others are asked for, too.
-            std::vector<CellPatch> patches = GatherBorder(_cell, turns, _rules.sdcOptions);
-            std::size_t const numEdges = patches.size() / 2;
-            std::vector<BorderItem> items;
-            for (std::size_t i = 0; i < patches.size(); ++i) {
-                std::vector<int> points = patches[i].patch.sources;
-                points.shrink_to_fit();
-                CellType const &type = _types.Find(CellPatch(patches[i]), _rules);
-                RingItem const &rings =
-                    RingItem::Get(type, patches[i], _types.GetRingCells(_rules));
-                items.push_back({&type, std::move(points), i < numEdges && turns[i] == 1,
-                                 rings.cell ? &rings : nullptr});
+    return get(item, [&] {
+        // The others are asked for, too.
+        std::vector<CellPatch> patches = GatherBorder(_cell, turns, _rules.sdcOptions);
+        std::size_t const numEdges = patches.size() / 2;
+        std::vector<BorderItem> items;
+        for (std::size_t i = 0; i < patches.size(); ++i) {
+            std::vector<int> points = patches[i].patch.sources;
+            points.shrink_to_fit();
+            CellType const &type = _types.Find(CellPatch(patches[i]), _rules);
+            RingItem const &rings = RingItem::Get(type, patches[i], _types.GetRingCells(_rules));
+            items.push_back({&type, std::move(points), i < numEdges && turns[i] == 1,
+                             rings.cell ? &rings : nullptr});
+        }
+        for (std::size_t i = 0; i < items.size(); ++i) {
+            if (i != item) {
+                get(i, [&] { return items[i]; });
             }
-            for (std::size_t i = 0; i < items.size(); ++i) {
-                if (i != item) {
-                    get(i, [&] { return items[i]; });
-                }
-            }
-            return items[item];
-        });
-    };
-    return _foundItems ? _foundItems->Get<BorderItem>(
-                             item * kMaxLatticeValence + std::size_t(turns[item]), find)
-                       : find();
+        }
+        return items[item];
+    });
 }
 
 std::vector<double> CellType::FindPatchPoints(PatchAges const &ages) const {
@@ -368,11 +371,31 @@ std::vector<CellType::Corner> const &CellType::GetCorners() const {
             }
         }
         _corners = std::move(corners);
+        GetMemory().Add(internal::GetHeapSize(_corners));
     });
     return _corners;
 }
 
-CellTypes::CellTypes() = default;
+MemoryCount &CellType::GetMemory() const { return _types.GetMemory(); }
+
+// What is made with some rules besides the types of cells.
+struct CellTypes::OfRules {
+    struct Finder {
+        explicit Finder(CellRules const &rules) : masks(rules.sdcOptions, rules.hexSchemeOptions) {}
+
+        LimitMaskFinder masks;
+        int numUses = 0;
+    };
+
+    OfRules(CellTypes &types, CellRules const &rules)
+        : plainFaces(types, rules), ringCells(types, rules) {}
+
+    PlainFaceTypes plainFaces;
+    RingCells ringCells;
+    std::vector<std::unique_ptr<Finder>> finders; // that no thread uses
+};
+
+CellTypes::CellTypes(std::shared_ptr<MemoryCount::Total> memory) : _memory(std::move(memory)) {}
 CellTypes::~CellTypes() = default;
 
 CellTypes::Key CellTypes::getKey(CellRules const &rules) {
@@ -395,43 +418,65 @@ CellType const &CellTypes::Find(CellPatch &&cell, CellRules const &rules) {
     addAll(cell.locals);
     addNumber(-1 - int(cell.kind), key);
     addAll(cell.patch.signature);
-    {
-        std::shared_lock<std::shared_mutex> const lock(_mutex);
-        auto const found = _types.find(key);
-        if (found != _types.end()) {
-            return *found->second;
-        }
+    std::size_t const hash = std::hash<Key>()(key);
+    auto const isSame = [&](Entry const &entry) { return entry.key == key; };
+    if (Entry const *const found = _types.Find(hash, isSame)) {
+        return found->type;
     }
-    key.shrink_to_fit();
     trim(cell);
-    auto type = std::make_unique<CellType>(*this, std::move(cell), rules);
-    std::lock_guard<std::shared_mutex> const lock(_mutex);
-    return *_types.emplace(std::move(key), std::move(type)).first->second;
+    std::size_t const size = decltype(_types)::kEntrySize + key.size() + GetCellHeapSize(cell);
+    auto const [entry, isNew] =
+        _types.Add(std::make_unique<Entry const>(hash, key, *this, std::move(cell), rules), isSame);
+    if (isNew) {
+        ++_numTypes;
+        _memory.Add(size);
+    }
+    return entry->type;
+}
+
+auto CellTypes::getRules(CellRules const &rules) -> OfRules & {
+    std::lock_guard<std::mutex> const lock(_mutex);
+    std::unique_ptr<OfRules> &ofRules = _rules[getKey(rules)];
+    if (!ofRules) {
+        ofRules = std::make_unique<OfRules>(*this, rules);
+    }
+    return *ofRules;
 }
 
 PlainFaceTypes &CellTypes::GetPlainFaces(CellRules const &rules) {
-    std::lock_guard<std::shared_mutex> const lock(_mutex);
-    std::unique_ptr<PlainFaceTypes> &types = _plainFaces[getKey(rules)];
-    if (!types) {
-        types = std::make_unique<PlainFaceTypes>(*this, rules);
-    }
-    return *types;
+    return getRules(rules).plainFaces;
 }
 
-RingCells &CellTypes::GetRingCells(CellRules const &rules) {
-    std::lock_guard<std::shared_mutex> const lock(_mutex);
-    std::unique_ptr<RingCells> &cells = _ringCells[getKey(rules)];
-    if (!cells) {
-        cells = std::make_unique<RingCells>(*this, rules);
+RingCells &CellTypes::GetRingCells(CellRules const &rules) { return getRules(rules).ringCells; }
+
+std::vector<CornerLimit> CellTypes::FindLimits(CellPatch const &cell, CellRules const &rules) {
+    // Types keep what they get: a finder need not remember more than a mesh's usual cells.
+    constexpr int kMaxUses = 512;
+    OfRules &ofRules = getRules(rules);
+    std::unique_ptr<OfRules::Finder> finder;
+    {
+        std::lock_guard<std::mutex> const lock(_mutex);
+        if (!ofRules.finders.empty()) {
+            finder = std::move(ofRules.finders.back());
+            ofRules.finders.pop_back();
+        }
     }
-    return *cells;
+    if (!finder) {
+        finder = std::make_unique<OfRules::Finder>(rules);
+    }
+    std::vector<CornerLimit> limits = FindCornerLimits(cell, finder->masks);
+    if (++finder->numUses < kMaxUses) {
+        std::lock_guard<std::mutex> const lock(_mutex);
+        ofRules.finders.push_back(std::move(finder));
+    }
+    return limits;
 }
 
 std::size_t CellTypes::GetSize() const {
-    std::shared_lock<std::shared_mutex> const lock(_mutex);
-    std::size_t size = _types.size();
-    for (auto const &[key, faces] : _plainFaces) {
-        size += faces->GetNumUnmade();
+    std::lock_guard<std::mutex> const lock(_mutex);
+    std::size_t size = _numTypes;
+    for (auto const &[key, ofRules] : _rules) {
+        size += ofRules->plainFaces.GetNumUnmade();
     }
     return size;
 }

@@ -9,9 +9,9 @@
 #include "far_ext/limit/cellPatch.h"
 #include "far_ext/patch/patchBuilder.h"
 
+#include <atomic>
 #include <memory>
 #include <mutex>
-#include <shared_mutex>
 #include <string>
 #include <unordered_map>
 #include <vector>
@@ -30,6 +30,9 @@ struct CellRules {
     FarExt::Interpolation interpolation = FarExt::Interpolation::Vertex;
 };
 
+/// Bytes of a cell on the heap.
+std::size_t GetCellHeapSize(FarExt::internal::CellPatch const &cell);
+
 /// \brief All cells whose patches look alike: what the surface in them is in terms of the vertices of
 /// the patch, its *points*.
 ///
@@ -40,6 +43,8 @@ class CellType {
 public:
     /// A cell that a step makes.
     struct Child {
+        std::size_t GetHeapSize() const { return step.GetHeapSize(); }
+
         CellType const *type;
         ChildStep step; ///< its points in terms of the parent's
     };
@@ -47,6 +52,10 @@ public:
     /// The surface at a corner, as sums of points: it, and its first derivatives by the coordinates of
     /// HalfCell or, in a whole cell, of the sector that begins at the corner.
     struct Corner {
+        std::size_t GetHeapSize() const {
+            return GetHeapSizes(point, derivatives[0], derivatives[1]);
+        }
+
         std::vector<double> point;
         std::vector<double> derivatives[2];
     };
@@ -70,7 +79,6 @@ public:
     static constexpr int GetLatticeValence(int faceSize) {
         return faceSize == 3 ? 6 : faceSize == 4 ? 4 : faceSize == 6 ? 3 : 0;
     }
-    static constexpr std::size_t kMaxLatticeFaceSize = 6;
     /// Whether the surface has bounded curvature where the lattice is regular.
     bool HasBoundedCurvature() const {
         return _rules.hexSchemeOptions.faceMask != FarExt::FaceMask::Average &&
@@ -102,6 +110,8 @@ public:
 
     /// Derivatives by two coordinates, as sums of points.
     struct Derivatives {
+        std::size_t GetHeapSize() const { return GetHeapSizes(rows[0], rows[1]); }
+
         std::vector<double> rows[2];
     };
     /// \brief The parent's corner derivatives, in this cell's coordinates and control points.  They differ from this
@@ -116,6 +126,8 @@ public:
 
     /// \brief An edge or a vertex of a base face, with which of the face's points its points are.
     struct BorderItem {
+        std::size_t GetHeapSize() const { return internal::GetHeapSize(points); }
+
         CellType const *type;
         std::vector<int> points;
         bool isReversed;       ///< whether the edge runs against the face
@@ -132,6 +144,8 @@ public:
     std::vector<double> FindPatchPoints(FarExt::internal::PatchAges const &ages) const;
     /// The matrices of this type, made on demand.
     PatternTable &GetPatterns() const { return _patterns; }
+    /// Counts what its types take.
+    MemoryCount &GetMemory() const;
 
 private:
     // The child that has a corner, which corner of it that is, and the child's coordinates.
@@ -163,16 +177,17 @@ private:
     mutable std::once_flag _onceCorners;
     mutable std::vector<Corner> _corners;
     mutable PatternTable _borderItems;
-    static constexpr std::size_t kMaxLatticeValence = 6;
-    using FoundItems = FoundPatterns<2 * kMaxLatticeFaceSize * kMaxLatticeValence>;
-    std::unique_ptr<FoundItems> _foundItems; // of faces in lattices, by item and turn
     mutable PatternTable _patterns;
 };
 
-/// \brief The types that have been met.  Any number of threads may use it.
+/// \brief The types that have been met, all of which stay until these go.  Any number of threads may use it; types that are
+/// there are found without a lock, and none is held while something is made.
 class CellTypes {
 public:
-    CellTypes();
+    /// With a count of their own.
+    CellTypes() : CellTypes(std::make_shared<MemoryCount::Total>(0)) {}
+    /// \param memory  of which what they take is a part
+    explicit CellTypes(std::shared_ptr<MemoryCount::Total> memory);
     ~CellTypes();
 
     /// The type of a cell, which belongs to these types.
@@ -181,35 +196,36 @@ public:
     PlainFaceTypes &GetPlainFaces(CellRules const &rules);
     /// Products of the first step of plain faces with some rules.
     RingCells &GetRingCells(CellRules const &rules);
-    /// Calls function(finder), which no other thread uses then, for the limit masks of \p rules.
-    template <typename FUNCTION>
-    auto UseMasks(CellRules const &rules, FUNCTION function) {
-        std::lock_guard<std::mutex> const lock(_masksMutex);
-        // Types keep what they get: a finder need not remember more than a mesh's usual cells.
-        constexpr int kMaxUses = 512;
-        std::unique_ptr<FarExt::internal::LimitMaskFinder> &finder = _masks[getKey(rules)];
-        if (!finder || ++_numMaskUses % kMaxUses == 0) {
-            finder = std::make_unique<FarExt::internal::LimitMaskFinder>(rules.sdcOptions,
-                                                                         rules.hexSchemeOptions);
-        }
-        return function(*finder);
-    }
+    /// As FindCornerLimits(), with what other cells found.
+    std::vector<FarExt::internal::CornerLimit> FindLimits(FarExt::internal::CellPatch const &cell,
+                                                          CellRules const &rules);
     /// Those of plain base faces count even while nobody has asked for more of them.
     std::size_t GetSize() const;
+    /// What all of this takes, but for the masks of FindLimits().
+    MemoryCount &GetMemory() { return _memory; }
 
 private:
     // Numbers of one byte mostly.
     using Key = std::string;
+    struct Entry {
+        Entry(std::size_t hashOfKey, Key ofCell, CellTypes &types, FarExt::internal::CellPatch cell,
+              CellRules const &rules)
+            : hash(hashOfKey), key(std::move(ofCell)), type(types, std::move(cell), rules) {}
+
+        std::size_t const hash;
+        Key const key;
+        CellType const type;
+    };
+    struct OfRules;
 
     static Key getKey(CellRules const &rules);
+    OfRules &getRules(CellRules const &rules);
 
-    mutable std::shared_mutex _mutex;
-    std::unordered_map<Key, std::unique_ptr<CellType>> _types;
-    std::unordered_map<Key, std::unique_ptr<PlainFaceTypes>> _plainFaces;
-    std::unordered_map<Key, std::unique_ptr<RingCells>> _ringCells;
-    std::mutex _masksMutex;
-    int _numMaskUses = 0;
-    std::unordered_map<Key, std::unique_ptr<FarExt::internal::LimitMaskFinder>> _masks;
+    MemoryCount _memory;
+    EntryTable<Entry> _types;
+    std::atomic<std::size_t> _numTypes{0};
+    mutable std::mutex _mutex;
+    std::unordered_map<Key, std::unique_ptr<OfRules>> _rules;
 };
 
 } // namespace OpenSubdivHex::BfrExt::internal

@@ -19,6 +19,9 @@ namespace OpenSubdivHex::BfrExt::internal {
 template <typename ENTRY>
 class EntryTable {
 public:
+    /// Bytes that an entry takes, with its part of the table, without what it has on the heap.
+    static constexpr std::size_t kEntrySize = sizeof(ENTRY) + 5 * sizeof(void *);
+
     EntryTable() = default;
     EntryTable(EntryTable const &) = delete;
     EntryTable &operator=(EntryTable const &) = delete;

@@ -100,19 +100,82 @@ PlaceMatrix<REAL> const &getMatrix(CellType const &type, int steps, CornerAges c
         });
 }
 
+// Sums up the points of consecutive patches of a face, as far as they are wanted.
+template <typename REAL>
+class PatchSummer {
+public:
+    PatchSummer(std::vector<int> const *wanted, int size, std::ptrdiff_t stride, REAL *points)
+        : _wanted(wanted), _size(size), _stride(stride), _points(points) {}
+
+    // Whether one of the next patches is wanted; if not, they are skipped.
+    bool SkipUnlessWanted(int numPatches) {
+        if (!_wanted || findWanted(_patch) != findWanted(_patch + numPatches)) {
+            return true;
+        }
+        _patch += numPatches;
+        return false;
+    }
+    // Those that a matrix makes.
+    void SumUp(PlaceMatrix<REAL> const &matrix, REAL const *points, std::ptrdiff_t stride) {
+        auto const numPatches = int(matrix.GetNumPlaces()) / kNumPatchPoints;
+        PlaceSums<REAL> sums = {points,
+                                stride,
+                                std::size_t(_size),
+                                nullptr,
+                                _points + std::ptrdiff_t(_patch) * kNumPatchPoints * _stride,
+                                _stride};
+        if (_wanted) {
+            _runs.clear();
+            auto const end = findWanted(_patch + numPatches);
+            for (auto patch = findWanted(_patch); patch != end; ++patch) {
+                addRuns((*patch - _patch) * kNumPatchPoints);
+            }
+            sums.runs = _runs.data();
+            sums.numRuns = _runs.size();
+        }
+        SumUpPlaces(matrix, sums);
+        _patch += numPatches;
+    }
+
+private:
+    std::vector<int>::const_iterator findWanted(int patch) const {
+        return std::lower_bound(_wanted->begin(), _wanted->end(), patch);
+    }
+    // The rows of a patch, and where they go: each to its own place.
+    void addRuns(int row) {
+        for (int const end = row + kNumPatchPoints; row < end;) {
+            int const next = std::min(end, (row / PlaceRun::kMaxBlock + 1) * PlaceRun::kMaxBlock);
+            _runs.push_back({row, row, next - row});
+            row = next;
+        }
+    }
+
+    std::vector<int> const *const _wanted;
+    int const _size;
+    std::ptrdiff_t const _stride;
+    REAL *const _points;
+    int _patch = 0; // the next one
+    std::vector<PlaceRun> _runs;
+};
+
 // Refines the points of cells as far as their types are many, and makes those of patches by matrices of these.
 template <typename REAL>
 class PointMaker {
 public:
-    PointMaker(RefinedCells &cells, int level, int size, std::ptrdiff_t stride, REAL *points)
-        : _cells(cells), _level(level), _size(size), _stride(stride), _points(points) {}
+    PointMaker(RefinedCells &cells, int faceSize, int level, PatchSummer<REAL> &summer)
+        : _cells(cells), _faceSize(faceSize), _level(level), _summer(summer) {}
 
     void Make(std::size_t cell, CornerAges const &ages) {
+        bool const isWhole = _cells[cell].GetLevel() == 0 || _cells[cell].GetType().IsWhole();
+        int const numLevels = _level - _cells[cell].GetLevel();
+        if (!_summer.SkipUnlessWanted(isWhole ? GetNumFacePatches(_faceSize, numLevels)
+                                              : getNumHalfPatches(numLevels))) {
+            return;
+        }
         if (_cells[cell].GetLevel() == RefinedCells::kFirstCommonLevel) {
             add(_cells[cell], ages);
             return;
         }
-        bool const isWhole = _cells[cell].GetLevel() == 0 || _cells[cell].GetType().IsWhole();
         std::size_t const first = _cells.GetFirstChild(cell);
         std::size_t const numCells = _cells.GetSize();
         forEachChild(isWhole, _cells.GetNumChildren(cell), ages,
@@ -129,16 +192,13 @@ private:
         std::size_t const padded = values.GetPaddedSize();
         double const *const point = values.GetPoint(0);
         _values.assign(point, point + std::size_t(values.GetNumPoints()) * padded);
-        SumUpPlaces(matrix, {_values.data(), std::ptrdiff_t(padded), std::size_t(_size), nullptr,
-                             _points, _stride});
-        _points += std::ptrdiff_t(matrix.GetNumPlaces()) * _stride;
+        _summer.SumUp(matrix, _values.data(), std::ptrdiff_t(padded));
     }
 
     RefinedCells &_cells;
+    int const _faceSize;
     int const _level;
-    int const _size;
-    std::ptrdiff_t const _stride;
-    REAL *_points;
+    PatchSummer<REAL> &_summer;
     std::vector<REAL> _values;
 };
 
@@ -302,7 +362,7 @@ namespace {
 // From the control points of a face that few are alike.
 template <typename TYPE, typename REAL>
 void makePoints(TYPE const &type, int faceSize, int level, REAL const *control, int size,
-                std::ptrdiff_t stride, REAL *points) {
+                std::ptrdiff_t stride, PatchSummer<REAL> &summer) {
     // Their memory is kept for the next face.
     static thread_local RefinedCells cells;
     static thread_local std::vector<double> packed;
@@ -312,7 +372,7 @@ void makePoints(TYPE const &type, int faceSize, int level, REAL const *control, 
         packed.insert(packed.end(), point, point + size);
     }
     cells.SetBase(type, packed.data(), size);
-    PointMaker<REAL>(cells, level, size, stride, points)
+    PointMaker<REAL>(cells, faceSize, level, summer)
         .Make(RefinedCells::kBase, CornerAges(std::size_t(faceSize), -1));
 }
 
@@ -320,14 +380,16 @@ void makePoints(TYPE const &type, int faceSize, int level, REAL const *control, 
 
 template <typename REAL>
 void MakeFacePatchPoints(BaseType const &type, int faceSize, int level, REAL const *control,
-                         int size, std::ptrdiff_t stride, REAL *points) {
+                         int size, std::ptrdiff_t stride, std::vector<int> const *wanted,
+                         REAL *points) {
+    PatchSummer<REAL> summer(wanted, size, stride, points);
     if (PlainFaceType const *const plain = type.GetPlain()) {
-        makePoints(*plain, faceSize, level, control, size, stride, points);
+        makePoints(*plain, faceSize, level, control, size, stride, summer);
     } else if (type.IsInLattice()) {
-        SumUpPlaces(getMatrix<REAL>(*type, 0, CornerAges(std::size_t(faceSize), -1), level),
-                    {control, stride, std::size_t(size), nullptr, points, stride});
+        summer.SumUp(getMatrix<REAL>(*type, 0, CornerAges(std::size_t(faceSize), -1), level),
+                     control, stride);
     } else {
-        makePoints(*type, faceSize, level, control, size, stride, points);
+        makePoints(*type, faceSize, level, control, size, stride, summer);
     }
 }
 
@@ -475,9 +537,9 @@ void EvaluatePatch(PatchPlace const &place, int numDerivatives, REAL const *poin
 }
 
 template void MakeFacePatchPoints(BaseType const &, int, int, float const *, int, std::ptrdiff_t,
-                                  float *);
+                                  std::vector<int> const *, float *);
 template void MakeFacePatchPoints(BaseType const &, int, int, double const *, int, std::ptrdiff_t,
-                                  double *);
+                                  std::vector<int> const *, double *);
 template void EvaluatePatch(PatchPlace const &, int, float const *, int, std::ptrdiff_t,
                             float *const *);
 template void EvaluatePatch(PatchPlace const &, int, double const *, int, std::ptrdiff_t,

@@ -7,6 +7,7 @@
 #include "far_ext/patch/patchBuilder.h"
 
 #include <cstddef>
+#include <vector>
 
 namespace OpenSubdivHex::BfrExt::internal {
 
@@ -36,13 +37,15 @@ struct PatchPlace {
 /// 0, 1 or 2.
 PatchPlace FindPatchPlace(BfrPlace const &ofFace, int size, int level, int numDerivatives);
 
-/// \brief Makes the points of all patches of a face from its control points.
+/// \brief Makes the points of patches of a face from its control points.
 ///
 /// \param control  points of the type, of \p size numbers each, from one to the next by \p stride
-/// \param points   kNumPatchPoints for each patch, likewise
+/// \param wanted   the patches, ascending; null: all
+/// \param points   kNumPatchPoints for each patch of the face, likewise; those of other patches are left as they are
 template <typename REAL>
 void MakeFacePatchPoints(BaseType const &type, int faceSize, int level, REAL const *control,
-                         int size, std::ptrdiff_t stride, REAL *points);
+                         int size, std::ptrdiff_t stride, std::vector<int> const *wanted,
+                         REAL *points);
 
 /// \brief Evaluates a patch: the point, and derivatives by u and v as far as \p numDerivatives asks: 0, 1 or 2.
 ///

@@ -4,6 +4,7 @@
 #include "lanes.h"
 #include "patchCorners.h"
 
+#include "far_ext/rules/quadPath.h"
 #include "far_ext/vtr/irregularFeatures.h"
 
 #include <algorithm>
@@ -77,14 +78,10 @@ private:
 
     // Key of the masks around a vertex.
     std::vector<int> getKey(std::vector<int> const &ring) const {
-        constexpr int kQuad = 4;
         int const numFaces = int(ring.size());
-        bool const areQuads = std::all_of(ring.begin(), ring.end(), [this](int corner) {
-            return _corners.GetFaceSize(corner) == kQuad;
-        });
-        return {numFaces, int(areQuads),
-                int(FarExt::internal::FindFacesAround(
-                    numFaces, [&](int i) { return _corners.GetFaceSize(ring[std::size_t(i)]); }))};
+        auto const getFaceSize = [&](int i) { return _corners.GetFaceSize(ring[std::size_t(i)]); };
+        return {numFaces, FarExt::internal::FindQuadFlag(numFaces, getFaceSize),
+                int(FarExt::internal::FindFacesAround(numFaces, getFaceSize))};
     }
 
     template <typename MAKE>

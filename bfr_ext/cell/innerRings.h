@@ -23,12 +23,13 @@ public:
             : doubles(std::move(weights)), floats(doubles.begin(), doubles.end()) {}
         double const *Get(double /*precision*/) const { return doubles.data(); }
         float const *Get(float /*precision*/) const { return floats.data(); }
+        std::size_t GetHeapSize() const { return GetHeapSizes(doubles, floats); }
 
         std::vector<double> doubles;
         std::vector<float> floats;
     };
 
-    explicit InnerMasks(CellRules const &rules) : _rules(rules) {}
+    InnerMasks(CellRules const &rules, MemoryCount &memory) : _rules(rules), _weights(memory) {}
 
     CellRules const &GetRules() const { return _rules; }
     /// \brief Whether rings have a second step, behind which cells depend on one vertex of the base mesh at most.
@@ -61,6 +62,7 @@ public:
 
     /// Whether there are any.
     bool IsUsed() const { return !_rings.empty(); }
+    std::size_t GetHeapSize() const { return internal::GetHeapSize(_rings); }
 
     /// \brief Finds what the second step makes around corners of a patch, where rings are.
     ///
@@ -90,6 +92,8 @@ private:
         Weights const *face;    // of the F-face behind it: of the F-vertex at place 0
     };
     struct Center {
+        std::size_t GetHeapSize() const { return internal::GetHeapSize(spokes); }
+
         Weights const *vertex;  // its own, and that of F-vertices
         Weights const *fVertex; // of F-vertices there: its own, of its F-face and of its E-faces
         std::vector<Spoke> spokes;

@@ -11,7 +11,6 @@
 #include <mutex>
 #include <new>
 #include <type_traits>
-#include <utility>
 #include <vector>
 
 namespace OpenSubdivHex::BfrExt::internal {
@@ -73,12 +72,10 @@ public:
 
     using Face = KeptFace<TYPE>;
 
-    /// \param owner      of the types
     /// \param numKinds   of data, each of which has points of its own
     /// \param maxMemory  in bytes; what would take more is not kept
-    KeptFaces(std::shared_ptr<void const> owner, int numFaces, std::size_t numKinds,
-              std::size_t maxMemory)
-        : _owner(std::move(owner)), _numFaces(numFaces), _maxMemory(maxMemory), _kinds(numKinds) {}
+    KeptFaces(int numFaces, std::size_t numKinds, std::size_t maxMemory)
+        : _numFaces(numFaces), _maxMemory(maxMemory), _kinds(numKinds) {}
     KeptFaces(KeptFaces const &) = delete;
     KeptFaces &operator=(KeptFaces const &) = delete;
 
@@ -183,7 +180,6 @@ private:
         return result;
     }
 
-    std::shared_ptr<void const> const _owner;
     int const _numFaces;
     std::size_t const _maxMemory;
     Face const _metOnce{}; // whose address stands for faces that are not kept yet

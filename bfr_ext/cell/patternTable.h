@@ -3,9 +3,9 @@
 #define OPENSUBDIVHEX_BFR_EXT_CELL_PATTERN_TABLE_H
 
 #include "entryTable.h"
+#include "memoryCount.h"
 
 #include <algorithm>
-#include <atomic>
 #include <cstddef>
 #include <memory>
 #include <utility>
@@ -37,9 +37,12 @@ enum class PatternOf {
 
 /// \brief Values by key, of any type.
 ///
-/// Any number of threads may use it; what is there already is found without a lock.
+/// Any number of threads may use it; what is there already is found without a lock, and none is held while a value is made.
 class PatternTable {
 public:
+    /// \param memory  counts what the values take
+    explicit PatternTable(MemoryCount &memory) : _memory(memory) {}
+
     /// The kind of patterns of a precision.
     template <typename REAL>
     static constexpr int GetKind(PatternOf of) {
@@ -59,12 +62,15 @@ public:
         };
         Entry const *entry = _entries.Find(hash, isSame);
         if (!entry) {
-            std::shared_ptr<void const> pattern = std::make_shared<PATTERN const>(make());
-            entry = _entries
-                        .Add(std::make_unique<Entry const>(
-                                 Entry{kind, {begin, end}, hash, std::move(pattern)}),
-                             isSame)
-                        .first;
+            auto pattern = std::make_shared<PATTERN const>(make());
+            std::size_t const size = sizeof(PATTERN) + GetHeapSize(*pattern);
+            auto const [added, isNew] = _entries.Add(
+                std::make_unique<Entry const>(Entry{kind, {begin, end}, hash, std::move(pattern)}),
+                isSame);
+            if (isNew) {
+                _memory.Add(decltype(_entries)::kEntrySize + GetHeapSize(added->rest) + size);
+            }
+            entry = added;
         }
         return *static_cast<PATTERN const *>(entry->pattern.get());
     }
@@ -86,29 +92,8 @@ private:
         return hash;
     }
 
+    MemoryCount &_memory;
     EntryTable<Entry> _entries;
-};
-
-/// \brief Where some patterns of a table are that all faces ask for: these look them up once.
-///
-/// Any number of threads may use it.
-template <std::size_t SIZE>
-class FoundPatterns {
-public:
-    /// The pattern at a place, which find() gives where nobody has asked for it yet.
-    template <typename PATTERN, typename FIND>
-    PATTERN const &Get(std::size_t place, FIND const &find) {
-        std::atomic<void const *> &found = _patterns[place];
-        if (void const *const pattern = found.load(std::memory_order_acquire)) {
-            return *static_cast<PATTERN const *>(pattern);
-        }
-        PATTERN const &pattern = find();
-        found.store(&pattern, std::memory_order_release);
-        return pattern;
-    }
-
-private:
-    std::atomic<void const *> _patterns[SIZE] = {};
 };
 
 } // namespace OpenSubdivHex::BfrExt::internal

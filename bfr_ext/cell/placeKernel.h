@@ -2,6 +2,8 @@
 #ifndef OPENSUBDIVHEX_BFR_EXT_CELL_PLACE_KERNEL_H
 #define OPENSUBDIVHEX_BFR_EXT_CELL_PLACE_KERNEL_H
 
+#include "memoryCount.h"
+
 #include <algorithm>
 #include <cstddef>
 #include <new>
@@ -57,6 +59,7 @@ public:
 
     std::size_t GetNumPlaces() const { return _numPlaces; }
     std::size_t GetNumPoints() const { return _numPoints; }
+    std::size_t GetHeapSize() const { return internal::GetHeapSize(_weights); }
 
     template <typename WEIGHT = double>
     void Set(std::size_t place, std::vector<WEIGHT> const &stencil) {

@@ -67,7 +67,8 @@ std::size_t PlainFaceKey::GetHash() const {
 PlainFaceType::PlainFaceType(PlainFaceTypes &types, PlainFaceKey const &key, int numVerts,
                              GrowingPatch const &patch)
     : hash(key.GetHash()), _types(types), _key(key.GetBytes(), key.GetBytes() + key.GetSize()),
-      _numVerts(numVerts), _points(patch.GetPoints()), _isInLattice(isInLattice(key, numVerts)) {}
+      _numVerts(numVerts), _points(patch.GetPoints()), _isInLattice(isInLattice(key, numVerts)),
+      _latticeItems(types._types.GetMemory()) {}
 
 PlainFaceType::~PlainFaceType() { delete _rings.load(); }
 
@@ -85,6 +86,7 @@ FaceRings const &PlainFaceType::makeRings() const {
                                                    _types._types.GetRingCells(_types._rules));
     FaceRings const *expected = nullptr;
     if (_rings.compare_exchange_strong(expected, rings.get(), std::memory_order_acq_rel)) {
+        _types._types.GetMemory().Add(internal::GetHeapSize(rings));
         return *rings.release();
     }
     return *expected;
@@ -221,6 +223,7 @@ PlainFaceType const &PlainFaceTypes::Add(PlainFaceKey const &key, int numVerts,
                      [&](PlainFaceType const &other) { return other.HasKey(key); });
     if (isNew) {
         ++_numUnmade;
+        _types.GetMemory().Add(decltype(_entries)::kEntrySize + type->GetHeapSize());
     }
     return *type;
 }

@@ -3,7 +3,6 @@
 #define OPENSUBDIVHEX_BFR_EXT_CELL_PLAIN_FACE_H
 
 #include "cellType.h"
-#include "entryTable.h"
 #include "faceWalk.h"
 #include "growingPatch.h"
 #include "ringCell.h"
@@ -58,6 +57,7 @@ public:
     std::size_t const hash; ///< of the key
 
     bool HasKey(PlainFaceKey const &key) const;
+    std::size_t GetHeapSize() const { return GetHeapSizes(_key, _points); }
     int GetNumPoints() const { return _numVerts + int(_points.size()); }
     /// Those behind the vertices whose faces are all there.
     std::vector<Point> const &GetPoints() const { return _points; }
@@ -72,12 +72,6 @@ public:
     FaceRings const &GetRings() const {
         FaceRings const *const rings = _rings.load(std::memory_order_acquire);
         return rings ? *rings : makeRings();
-    }
-    /// Has these, where they are there, brought to the cache, while something else is done.
-    void PrefetchRings() const {
-        if (FaceRings const *const rings = _rings.load(std::memory_order_acquire)) {
-            rings->Prefetch();
-        }
     }
     /// \brief As CellType::GetBorderItem() of an edge or, behind these, of a vertex that the rings have in a
     /// lattice, without the CellType of the face.

@@ -68,6 +68,8 @@ private:
     };
     // Of places, by row: of the points, or of the derivatives by u and v.
     struct Matrices {
+        std::size_t GetHeapSize() const { return GetHeapSizes(matrices, runs); }
+
         std::vector<PlaceMatrix<REAL>> matrices;
         std::vector<PlaceRun> runs; ///< none: all places in turn
     };

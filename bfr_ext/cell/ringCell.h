@@ -20,6 +20,7 @@ public:
 
     /// \brief By *column*, in the order of rings, which of the vertices it is.
     std::vector<int> const &GetColumns() const { return _columns; }
+    std::size_t GetHeapSize() const { return GetHeapSizes(_columns, _places, _ends); }
     /// \brief By column but the first, its place behind the begin of the block of its ring's face 0.
     ///
     /// A ring has places without a column where it has a vertex twice, since two edges join the same
@@ -90,13 +91,14 @@ public:
     /// \param step    that made it
     /// \param points  of the type
     RingCell(CellType const &type, RingStep step, RingPlaces points)
-        : _type(type), _lastStep(step), _isInner(false), _points(std::move(points)) {}
+        : _type(type), _lastStep(step), _isInner(false), _points(std::move(points)),
+          _patterns(type.GetMemory()) {}
     /// A cell evaluated as sums of the points behind the second step.
     ///
     /// \param inner  what the step of the type makes, by row of it
     RingCell(CellType const &type, RingPlaces points, RingPlaces inner)
         : _type(type), _lastStep(RingStep::Second), _isInner(true), _points(std::move(points)),
-          _inner(std::move(inner)) {}
+          _inner(std::move(inner)), _patterns(type.GetMemory()) {}
 
     /// Of an inner cell that of any other one that is the same behind the step: nothing before it is the
     /// cell's own but the order of rows.
@@ -116,6 +118,7 @@ public:
     template <typename REAL>
     std::vector<REAL> const &GetVertexWeights() const;
 
+    std::size_t GetHeapSize() const { return GetHeapSizes(_points, _inner); }
     /// Its matrices, made on demand.
     PatternTable &GetPatterns() const { return _patterns; }
 
@@ -153,6 +156,8 @@ private:
 
 /// An edge or a vertex in a lattice, of any face, with its patch.
 struct LatticeItem {
+    std::size_t GetHeapSize() const { return GetCellHeapSize(cell); }
+
     FarExt::internal::CellPatch cell;
     CellType const *type;
 };
@@ -166,6 +171,8 @@ struct RingEdge {
 
 /// Product of the first step of a vertex of plain base faces.
 struct RingVertex {
+    std::size_t GetHeapSize() const { return internal::GetHeapSize(vVertices); }
+
     /// By how many faces lie before that which asks; one alone if these make no difference.
     std::vector<RingCell const *> vVertices;
 
@@ -177,7 +184,10 @@ struct RingVertex {
 /// The cells of plain base faces with some rules.  Any number of threads may use it.
 class RingCells {
 public:
-    RingCells(CellTypes &types, CellRules const &rules) : _types(types), _masks(rules) {}
+    RingCells(CellTypes &types, CellRules const &rules)
+        : _types(types), _masks(rules, types.GetMemory()), _found(types.GetMemory()),
+          _edges(types.GetMemory()), _vertices(types.GetMemory()),
+          _latticeItems(types.GetMemory()) {}
 
     CellRules const &GetRules() const { return _masks.GetRules(); }
     InnerMasks &GetMasks() { return _masks; }
@@ -238,6 +248,8 @@ private:
 ///
 /// It is kept with its type: all faces around a vertex of many, or those of whole strips of edges, share it.
 struct RingItem {
+    std::size_t GetHeapSize() const { return rings.GetHeapSize(); }
+
     VertexRings rings;              ///< of the start of the edge and of its end, or of the vertex
     RingCell const *cell = nullptr; ///< null where the edge or vertex is in a lattice, or not plain
 
@@ -254,12 +266,7 @@ public:
     FaceRings(FarExt::internal::CellPatch const &cell, RingCells &cells);
 
     VertexRings const &GetRings() const { return _rings; }
-    /// Has what the face is evaluated with brought to the cache, while something else is done.
-    void Prefetch() const {
-        PrefetchArray(_edges);
-        PrefetchArray(_verts);
-        _rings.Prefetch();
-    }
+    std::size_t GetHeapSize() const { return GetHeapSizes(_rings, _edges, _verts); }
     /// Whether a vertex and its neighbours are in a regular lattice, or both vertices of an edge.
     bool IsVertexInLattice(int vert) const {
         return _rings.GetRings()[std::size_t(vert)].isInLattice;

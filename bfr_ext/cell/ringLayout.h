@@ -2,6 +2,8 @@
 #ifndef OPENSUBDIVHEX_BFR_EXT_CELL_RING_LAYOUT_H
 #define OPENSUBDIVHEX_BFR_EXT_CELL_RING_LAYOUT_H
 
+#include "memoryCount.h"
+
 #include "far_ext/limit/limitPatch.h"
 
 #include <algorithm>
@@ -27,6 +29,7 @@ public:
 
     int GetNumFaces() const { return _numFaces; }
     bool AreSame() const { return _sizes.empty(); }
+    std::size_t GetHeapSize() const { return internal::GetHeapSize(_sizes); }
     int operator[](int face) const { return AreSame() ? _firstSize : _sizes[std::size_t(face)]; }
 
 private:
@@ -47,6 +50,7 @@ struct Ring {
     /// Whether the faces around the vertex and its neighbours are a piece of a regular lattice.
     bool isInLattice;
 
+    std::size_t GetHeapSize() const { return faceSizes.GetHeapSize(); }
     int GetNumFaces() const { return faceSizes.GetNumFaces(); }
     /// The size of a face; face -1 is the last.
     int GetFaceSize(int face) const { return faceSizes[face < 0 ? GetNumFaces() - 1 : face]; }
@@ -95,15 +99,18 @@ struct RingLayout {
     int center;
     std::vector<int> faceSizes;
     std::vector<int> verts; ///< from the block of face 0 to that of the last
+    /// With masks that depend on those, by face: the flag of the neighbor where it begins, see FindQuadFlag.
+    std::vector<int> flags;
 
     /// The layout of the first step from another face on.
     RingLayout From(int firstFace) const;
 };
 /// The layout of the first step from a patch.
 ///
-/// \param corners  those of VertexRings::Init(), which finds rings there
+/// \param corners   those of VertexRings::Init(), which finds rings there
+/// \param hasFlags  whether masks depend on flags of neighbors, as Smooth's do
 std::vector<RingLayout> FindRingLayouts(FarExt::internal::LimitPatch const &patch,
-                                        std::vector<int> const &corners);
+                                        std::vector<int> const &corners, bool hasFlags);
 /// The layout of the second step, from a patch that the first step makes.
 ///
 /// \param rings  those of the first step

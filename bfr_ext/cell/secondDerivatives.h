@@ -37,6 +37,7 @@ public:
 
     /// Whether the type is of such cells.
     bool Exist() const { return !_rows.empty(); }
+    std::size_t GetHeapSize() const { return internal::GetHeapSize(_rows); }
     Rows const &AtCorner(std::size_t corner) const { return _rows[corner]; }
 
 private:

@@ -2,6 +2,8 @@
 #ifndef OPENSUBDIVHEX_BFR_EXT_CELL_STEP_MATRIX_H
 #define OPENSUBDIVHEX_BFR_EXT_CELL_STEP_MATRIX_H
 
+#include "memoryCount.h"
+
 #include "far_ext/limit/limitPatch.h"
 
 #include <algorithm>
@@ -10,20 +12,6 @@
 #include <vector>
 
 namespace OpenSubdivHex::BfrExt::internal {
-
-/// Has an array brought to the cache, while something else is done.
-template <typename T>
-void PrefetchArray(std::vector<T> const &array) {
-#if defined(__GNUC__)
-    constexpr std::size_t kLine = 64;
-    auto const *const bytes = reinterpret_cast<char const *>(array.data());
-    for (std::size_t i = 0; i < array.size() * sizeof(T); i += kLine) {
-        __builtin_prefetch(bytes + i);
-    }
-#else
-    static_cast<void>(array);
-#endif
-}
 
 /// \brief The points that a step makes of those of a cell, a row for each, in little memory, since there
 /// are many types of cells.
@@ -39,6 +27,7 @@ public:
 
     std::size_t GetNumRows() const { return _numRows; }
     std::size_t GetNumParentPoints() const { return _numParentPoints; }
+    std::size_t GetHeapSize() const { return internal::GetHeapSize(_block); }
 
     /// Calls function(point of the parent, weight) for the entries of a row, in their order.
     template <typename FUNCTION>
@@ -66,8 +55,6 @@ public:
             std::copy_n(point, size, result);
         }
     }
-    /// Has what Apply() reads brought to the cache, while something else is done.
-    void Prefetch() const { PrefetchArray(_block); }
     /// Writes the points that the step makes, \p paddedSize numbers each as those of the parent.
     template <typename REAL>
     void Apply(REAL const *points, std::size_t paddedSize, REAL *result) const {
@@ -170,6 +157,7 @@ public:
     ChildStep(StepMatrix const &matrix, std::vector<int> const &rows);
 
     std::size_t GetNumRows() const { return _bytes.size() + _longs.size(); }
+    std::size_t GetHeapSize() const { return GetHeapSizes(_bytes, _longs); }
     /// Copies the points of the child from those that the matrix made.
     template <typename REAL>
     void CopyPoints(REAL const *points, std::size_t paddedSize, REAL *result) const {

@@ -672,7 +672,7 @@ LimitMask FaceLimitMaskFinder::Find(Index face) const {
     }
     // The F-face has no vertex with one face.
     Index const first = _level.faceFirstCorner[face];
-    bool const isBesideOneFace = !_level.GetSectorCorners(first, first + size).empty();
+    bool const isBesideOneFace = !FindCornerTags(_level.sectorCorners, first, first + size).empty();
     return isBesideOneFace ? stepBack(std::move(mask), face) : mask;
 }
 
@@ -681,7 +681,6 @@ LimitMask FaceLimitMaskFinder::Find(Index face) const {
 LimitMask FaceLimitMaskFinder::findAfterStep(Index face) const {
     int const size = _level.GetFaceSize(face);
     Index const first = _level.faceFirstCorner[face];
-    bool const isQuad = size == 4;
     Level child;
     child.depth = _level.depth + 1;
     child.numFaces = 1;
@@ -700,12 +699,11 @@ LimitMask FaceLimitMaskFinder::findAfterStep(Index face) const {
         child.crossedFaces = {{0, crossed->end}};
     }
     child.numHexagonalSteps = _level.numHexagonalSteps + 1;
-    for (int i = 0; i < size && !isQuad; ++i) {
-        if (QuadCorner const *const quad = _level.FindQuadCorner(first + i)) {
-            QuadFlag const out = AppendToQuadFlag(quad->out, _level.numHexagonalSteps, 0);
-            QuadFlag const in = AppendToQuadFlag(quad->in, _level.numHexagonalSteps, 0);
-            if (out != 0 || in != 0) {
-                child.quadCorners.push_back({i, out, in, std::max(0.0f, quad->sharpness - 1)});
+    if (size == HexIndexing::kNumEFaceCorners) {
+        for (QuadCorner const &quad : FindCornerTags(_level.quadCorners, first, first + size)) {
+            QuadFlags const flags = AppendToQuadFlags(quad.flags, _level.numHexagonalSteps, 0, 0);
+            if (flags.HasAny()) {
+                child.quadCorners.push_back({quad.corner - first, flags});
             }
         }
     }

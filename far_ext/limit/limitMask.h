@@ -91,11 +91,8 @@ private:
     bool hasFlags(Far::Index face) const {
         Far::Index const first = _level.faceFirstCorner[face];
         Far::Index const end = _level.faceFirstCorner[face + 1];
-        auto const found = std::lower_bound(
-            _level.quadCorners.begin(), _level.quadCorners.end(), first,
-            [](QuadCorner const &quad, Far::Index corner) { return quad.corner < corner; });
-        return end - first == HexIndexing::kNumEFaceCorners && found != _level.quadCorners.end() &&
-               found->corner < end;
+        return end - first == HexIndexing::kNumEFaceCorners &&
+               !FindCornerTags(_level.quadCorners, first, end).empty();
     }
     LimitMask findAfterStep(Far::Index face) const;
     LimitMask stepBack(LimitMask mask, Far::Index face) const;

@@ -16,7 +16,10 @@ namespace {
 constexpr int kHexagon = 6;
 constexpr int kDigit = 4; // digits
 constexpr int kNumPaths = kDigit * kDigit * kDigit;
-constexpr int kNumVertices = 5;
+// Of vertices, by number of faces.
+constexpr int kFourFaces = 0;
+constexpr int kOtherFaces = 4;
+constexpr int kNumVertices = kOtherFaces + 1;
 constexpr int kNumEndings = kDigit * kDigit;
 
 // One more than these are flags: a path, of as many digits as there were steps, and a vertex; or, in the constant
@@ -25,6 +28,14 @@ struct Path {
     int vertex;
     int digits;
 };
+
+int getKind(int numFaces) {
+    return numFaces == 4   ? kFourFaces
+           : numFaces == 3 ? 1
+           : numFaces == 5 ? 2
+           : numFaces == 6 ? 3
+                           : kOtherFaces;
+}
 
 Path getPath(QuadFlag flag) { return {(flag - 1) / kNumPaths, (flag - 1) % kNumPaths}; }
 
@@ -64,7 +75,7 @@ public:
             }
             int const numSteps = star ? kNumStepsToConstantMasks : int(std::strlen(path));
             int const first =
-                star ? (row.path[0] == '3' ? kNumEndings : 0) : kNumPaths * getVertex(row.numFaces);
+                star ? (row.path[0] == '3' ? kNumEndings : 0) : kNumPaths * getKind(row.numFaces);
             _places[std::size_t(numSteps)][std::size_t(first + digits)] = int(_rows.size());
             Row &made = _rows.emplace_back();
             std::transform(row.parts, row.parts + kHexagon, made.weights,
@@ -89,23 +100,12 @@ public:
 private:
     static constexpr int kNone = -1;
 
-    static int getVertex(int numFaces) {
-        return int(numFaces == 3   ? QuadVertex::Three
-                   : numFaces == 5 ? QuadVertex::Five
-                   : numFaces == 6 ? QuadVertex::Six
-                                   : QuadVertex::Four);
-    }
-
     std::array<std::array<int, std::size_t(kNumVertices *kNumPaths)>, kNumStepsToConstantMasks + 1>
         _places;
     std::vector<Row> _rows;
 };
 
-} // namespace
-
-QuadFlag MakeQuadFlag(QuadVertex vertex) { return QuadFlag(1 + kNumPaths * int(vertex)); }
-
-QuadFlag AppendToQuadFlag(QuadFlag flag, int numSteps, int digit) {
+QuadFlag append(QuadFlag flag, int numSteps, int digit) {
     if (flag == 0) {
         return 0;
     }
@@ -116,7 +116,7 @@ QuadFlag AppendToQuadFlag(QuadFlag flag, int numSteps, int digit) {
     // The first digit of three, or of the ending, has to be what is before it.
     int const ending = digits % kNumEndings;
     bool const isAtVertex = numSteps < kNumStepsToConstantMasks
-                                ? digits / kDigit == repeat(3, 2) && vertex == int(QuadVertex::Four)
+                                ? digits / kDigit == repeat(3, 2) && vertex == kFourFaces
                                 : digits >= kNumEndings && ending / kDigit == 3;
     bool const isAtQuad = numSteps < kNumStepsToConstantMasks
                               ? digits / kDigit == 0
@@ -127,14 +127,23 @@ QuadFlag AppendToQuadFlag(QuadFlag flag, int numSteps, int digit) {
     return QuadFlag(1 + (isAtVertex ? kNumEndings : 0) + ending % kDigit * kDigit + digit);
 }
 
-QuadRow FindQuadRow(int numSteps, QuadFlag out, QuadFlag in) {
+} // namespace
+
+QuadFlag MakeQuadFlag(int numFaces) { return QuadFlag(1 + kNumPaths * getKind(numFaces)); }
+
+QuadFlags AppendToQuadFlags(QuadFlags flags, int numSteps, int outDigit, int inDigit) {
+    return {append(flags.out, numSteps, outDigit), append(flags.in, numSteps, inDigit),
+            std::max(0.0f, flags.sharpness - 1)};
+}
+
+QuadRow FindQuadRow(int numSteps, QuadFlags flags) {
     static Rows const rows;
     static constexpr QuadRow kNone = {nullptr, false, -1};
-    if (out == 0 || in == 0 || numSteps == 0) {
+    if (flags.out == 0 || flags.in == 0 || numSteps == 0) {
         return kNone;
     }
-    auto const [ofOut, pathOut] = getPath(out);
-    auto const [ofIn, pathIn] = getPath(in);
+    auto const [vertex, pathOut] = getPath(flags.out);
+    int const pathIn = getPath(flags.in).digits;
     int const path = std::min(pathOut, pathIn);
     bool const isBackwards = pathIn < pathOut;
     auto const make = [isBackwards](Rows::Row const *row) {
@@ -145,18 +154,14 @@ QuadRow FindQuadRow(int numSteps, QuadFlag out, QuadFlag in) {
         bool const isSame = pathOut / kNumEndings == pathIn / kNumEndings;
         return isSame ? make(rows.Find(kNumStepsToConstantMasks, path)) : kNone;
     }
-    if (ofOut == ofIn) {
-        // Beside other vertices, and beside their neighbors, a row is not for these.
-        bool const isBeside =
-            path == repeat(3, numSteps) || path == repeat(3, numSteps - 1) * kDigit + 1;
-        if (ofOut == int(QuadVertex::Other) && isBeside) {
-            return kNone;
-        }
-        if (Rows::Row const *const row = rows.Find(numSteps, kNumPaths * ofOut + path)) {
-            return make(row);
-        }
+    // Beside other vertices, and beside their neighbors, the rows of four quads are not for these.
+    bool const isBeside =
+        path == repeat(3, numSteps) || path == repeat(3, numSteps - 1) * kDigit + 1;
+    if (vertex == kOtherFaces && isBeside) {
+        return kNone;
     }
-    return make(rows.Find(numSteps, path));
+    Rows::Row const *const ofVertex = rows.Find(numSteps, kNumPaths * vertex + path);
+    return make(ofVertex ? ofVertex : rows.Find(numSteps, path));
 }
 
 } // namespace OpenSubdivHex::FarExt::internal

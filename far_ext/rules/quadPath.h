@@ -2,6 +2,8 @@
 #ifndef OPENSUBDIVHEX_FAR_EXT_RULES_QUAD_PATH_H
 #define OPENSUBDIVHEX_FAR_EXT_RULES_QUAD_PATH_H
 
+#include "far_ext/hexSchemeOptions.h"
+
 #include <cstdint>
 
 namespace OpenSubdivHex::FarExt::internal {
@@ -22,18 +24,33 @@ namespace OpenSubdivHex::FarExt::internal {
 /// begins with 3 3 ... 3, or near a quad, 0 0 ... 0; of the path the last two digits matter.
 using QuadFlag = std::uint16_t;
 
-/// \brief The vertex of quads that a flag was at, before the first step.  All faces there were quads.
-enum class QuadVertex {
-    Four, ///< inside of the mesh, with that many faces, and no edge there infinitely sharp
-    Three,
-    Five,
-    Six,
-    Other
+/// One at a vertex that has \p numFaces faces, all of them quads, before the first step.
+OPENSUBDIVHEX_API QuadFlag MakeQuadFlag(int numFaces);
+/// The same of any vertex inside of a mesh; 0 where a face, from getFaceSize(0) on, is no quad.
+template <typename GETFACESIZE>
+QuadFlag FindQuadFlag(int numFaces, GETFACESIZE const &getFaceSize) {
+    for (int i = 0; i < numFaces; ++i) {
+        if (getFaceSize(i) != 4) {
+            return 0;
+        }
+    }
+    return MakeQuadFlag(numFaces);
+}
+
+/// \brief Those of a corner, with its two edges: both came from one vertex of quads.
+struct QuadFlags {
+    QuadFlag out; ///< with the edge that begins at the corner
+    QuadFlag in;  ///< with the edge that ends there
+    /// Of the sharpest there was at the vertex of the quads, less one for each step since.
+    float sharpness;
+
+    bool HasAny() const { return out != 0 || in != 0; }
+    /// Of the masks that the paths tell; others have what is left.
+    float GetShare() const { return sharpness < 1 ? 1 - sharpness : 0; }
 };
 
-QuadFlag MakeQuadFlag(QuadVertex vertex);
-/// What a step makes of a flag, at a level that \p numSteps hexagonal steps made.
-QuadFlag AppendToQuadFlag(QuadFlag flag, int numSteps, int digit);
+/// What a step makes of flags with these digits, at a level that \p numSteps hexagonal steps made.
+QuadFlags AppendToQuadFlags(QuadFlags flags, int numSteps, int outDigit, int inDigit);
 
 /// \brief What the paths of its flags tell of a corner's F-vertex.
 struct QuadRow {
@@ -44,8 +61,8 @@ struct QuadRow {
     double vertexWeight;
 };
 
-/// Of a corner at a level that \p numSteps hexagonal steps made, with the flags of the edges that begin and end there.
-QuadRow FindQuadRow(int numSteps, QuadFlag out, QuadFlag in);
+/// Of a corner at a level that \p numSteps hexagonal steps made.
+QuadRow FindQuadRow(int numSteps, QuadFlags flags);
 
 } // namespace OpenSubdivHex::FarExt::internal
 

@@ -124,12 +124,6 @@ private:
         }
         return smoothPart(sharpness);
     }
-    // Whether a path tells the mask of a corner.
-    bool hasQuadRow(Index corner) const {
-        QuadCorner const *const quad = _level.FindQuadCorner(corner);
-        return quad && quad->sharpness == 0 &&
-               FindQuadRow(_level.numHexagonalSteps, quad->out, quad->in).mask;
-    }
 
     Refinement const &_refinement;
     Level &_level;
@@ -174,7 +168,7 @@ FacesAround IrregularFinder::findFacesAround(Index vert) const {
     Index const pVert = _refinement.GetVVertexParent(vert);
     if (parent.numHexagonalSteps > 0) {
         Index const corner = parent.GetVertexCorner(parent.vertFirstFace[pVert]);
-        auto const irregular = parent.GetIrregularCorners(corner, corner + 1);
+        auto const irregular = FindCornerTags(parent.irregularCorners, corner, corner + 1);
         bool const isKnown = !irregular.empty() && irregular[0].kind == IrregularCorner::kAtVertex;
         return isKnown ? irregular[0].facesAround : FacesAround::Others;
     }
@@ -244,9 +238,9 @@ void IrregularFinder::findCorners() {
     std::vector<std::size_t> const firsts =
         ParallelSums<std::size_t>(count, [&](Index begin, Index end) {
             std::size_t size = 0;
-            IrregularCorner corners[kHexagon];
-            forEachMarked(begin, end, [&](Index face, Mark mark) {
-                size += std::size_t(writeCorners(face, mark, corners) - corners);
+            forEachMarked(begin, end, [&](Index, Mark mark) {
+                forEachCorner(mark, _numRows,
+                              [&size](Side const &, int, IrregularCorner::Kind) { ++size; });
             });
             return size;
         });
@@ -277,7 +271,7 @@ IrregularCorner *IrregularFinder::writeCorners(Index face, Mark mark, IrregularC
         places |= 1U << local;
     });
     for (int local = 0; local < kHexagon; ++local) {
-        if ((places >> local & 1) != 0 && !hasQuadRow(first + local)) {
+        if (places >> local & 1) {
             *next++ = found[local];
         }
     }

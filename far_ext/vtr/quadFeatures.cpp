@@ -20,19 +20,12 @@ using Sdc::Crease;
 constexpr int kHexagon = HexIndexing::kNumEFaceCorners;
 constexpr int kQuad = 4;
 
-// The flags of the edges that begin and end at a corner.
-struct Flags {
-    QuadFlag out = 0;
-    QuadFlag in = 0;
-    float sharpness = 0;
-};
-
-Flags makeBaseFlags(Level const &level, Index vert) {
+QuadFlags makeBaseFlags(Level const &level, Index vert) {
     Far::ConstIndexArray const faces = level.GetVertexFaces(vert);
-    if (faces.size() == 0 || level.IsNonManifold(vert) ||
-        !std::all_of(faces.begin(), faces.end(), [&](Index face) {
-            return level.GetFaceSize(face) == kQuad && !level.IsHalfFace(face);
-        })) {
+    QuadFlag const flag = FindQuadFlag(faces.size(), [&](int i) {
+        return level.IsHalfFace(faces[i]) ? 0 : level.GetFaceSize(faces[i]);
+    });
+    if (faces.size() == 0 || flag == 0 || level.IsNonManifold(vert)) {
         return {};
     }
     Far::ConstIndexArray const edges = level.GetVertexEdges(vert);
@@ -46,12 +39,6 @@ Flags makeBaseFlags(Level const &level, Index vert) {
     if (Crease::IsInfinite(sharpness)) {
         return {};
     }
-    int const numFaces = faces.size();
-    QuadFlag const flag = MakeQuadFlag(numFaces == 4   ? QuadVertex::Four
-                                       : numFaces == 3 ? QuadVertex::Three
-                                       : numFaces == 5 ? QuadVertex::Five
-                                       : numFaces == 6 ? QuadVertex::Six
-                                                       : QuadVertex::Other);
     return {flag, flag, sharpness};
 }
 
@@ -71,9 +58,9 @@ public:
         auto const forEach = [this](Index begin, Index end, auto const &function) {
             for (Index i = begin; i < end; ++i) {
                 Index const face = _isSparse ? _faces[std::size_t(i)] : i;
-                forEachCorner(face, [&](Index corner, Flags flags) {
-                    if (flags.out != 0 || flags.in != 0) {
-                        function(QuadCorner{corner, flags.out, flags.in, flags.sharpness});
+                forEachCorner(face, [&](Index corner, QuadFlags flags) {
+                    if (flags.HasAny()) {
+                        function(QuadCorner{corner, flags});
                     }
                 });
             }
@@ -95,16 +82,15 @@ public:
 private:
     bool readParent();
     void listFaces();
-    Flags getParent(Index corner) const {
+    QuadFlags getParent(Index corner) const {
         if (!_isSparse) {
             return _flags[std::size_t(corner)];
         }
-        QuadCorner const *const found = _parent.FindQuadCorner(corner);
-        return found ? Flags{found->out, found->in, found->sharpness} : Flags();
+        auto const found = FindCornerTags(_parent.quadCorners, corner, corner + 1);
+        return found.empty() ? QuadFlags() : found[0].flags;
     }
-    static float fade(Flags flags) { return std::max(0.0f, flags.sharpness - 1); }
-    QuadFlag append(QuadFlag flag, int digit) const {
-        return AppendToQuadFlag(flag, _parent.numHexagonalSteps, digit);
+    QuadFlags append(QuadFlags flags, int outDigit, int inDigit) const {
+        return AppendToQuadFlags(flags, _parent.numHexagonalSteps, outDigit, inDigit);
     }
     template <typename FUNCTION>
     void forEachCorner(Index face, FUNCTION const &function) const;
@@ -113,7 +99,7 @@ private:
     Level const &_parent;
     Level &_level;
     bool const _isSparse;      // few of the parent's corners matter
-    Buffer<Flags> _flags;      // else of the parent, by corner
+    Buffer<QuadFlags> _flags;  // else of the parent, by corner
     std::vector<Index> _faces; // if so, those of the level that may have flags, ascending
 };
 
@@ -127,36 +113,36 @@ bool QuadFinder::readParent() {
     }
     _flags.Resize(std::size_t(_parent.numCorners));
     if (!isBase) {
-        std::fill_n(_flags.data(), _flags.size(), Flags());
-        for (QuadCorner const &corner : _parent.quadCorners) {
-            _flags[std::size_t(corner.corner)] = {corner.out, corner.in, corner.sharpness};
+        std::fill_n(_flags.data(), _flags.size(), QuadFlags());
+        for (QuadCorner const &quad : _parent.quadCorners) {
+            _flags[std::size_t(quad.corner)] = quad.flags;
         }
         return true;
     }
-    Buffer<Flags> ofVerts;
+    Buffer<QuadFlags> ofVerts;
     ofVerts.Resize(std::size_t(_parent.numVertices));
     ParallelFor(_parent.numVertices,
                 [&](Index vert) { ofVerts[std::size_t(vert)] = makeBaseFlags(_parent, vert); });
     ParallelFor(_parent.numCorners, [&](Index corner) {
         _flags[std::size_t(corner)] = ofVerts[std::size_t(_parent.faceVerts[corner])];
     });
-    return std::any_of(ofVerts.begin(), ofVerts.end(), [](Flags flags) { return flags.out != 0; });
+    return std::any_of(ofVerts.begin(), ofVerts.end(),
+                       [](QuadFlags flags) { return flags.HasAny(); });
 }
 
 // Those that flags of the parent make which go on.
 void QuadFinder::listFaces() {
-    auto const goesOn = [this](QuadFlag flag) { return append(flag, 0) != 0; };
     auto const addEFace = [this](Index edge) {
         if (Index const face = _refinement.GetEdgeChildFace(edge); face != Far::INDEX_INVALID) {
             _faces.push_back(face);
         }
     };
-    for (QuadCorner const &corner : _parent.quadCorners) {
-        if (goesOn(corner.out) || goesOn(corner.in)) {
-            Index const face = _parent.FindFaceOfCorner(corner.corner);
+    for (auto const &[corner, flags] : _parent.quadCorners) {
+        if (append(flags, 0, 0).HasAny()) {
+            Index const face = _parent.FindFaceOfCorner(corner);
             _faces.push_back(face);
-            addEFace(_parent.faceEdges[corner.corner]);
-            addEFace(_parent.faceEdges[_parent.GetPrevCorner(face, corner.corner)]);
+            addEFace(_parent.faceEdges[corner]);
+            addEFace(_parent.faceEdges[_parent.GetPrevCorner(face, corner)]);
         }
     }
     SortUnique(_faces, _level.numFaces);
@@ -169,8 +155,8 @@ void QuadFinder::forEachCorner(Index face, FUNCTION const &function) const {
     int const size = _level.GetFaceSize(face);
     if (face < _level.numFFaces) {
         for (Index corner = first; corner < first + size; ++corner) {
-            Flags const flags = getParent(corner - first + _parent.faceFirstCorner[face]);
-            function(corner, Flags{append(flags.out, 0), append(flags.in, 0), fade(flags)});
+            function(corner,
+                     append(getParent(corner - first + _parent.faceFirstCorner[face]), 0, 0));
         }
         return;
     }
@@ -178,19 +164,20 @@ void QuadFinder::forEachCorner(Index face, FUNCTION const &function) const {
         return;
     }
     Index const edge = _refinement.GetEFaceParent(face);
-    Flags made[kHexagon];
+    QuadFlags made[kHexagon];
     for (int side = 0; side < 2; ++side) {
         EFaceSide const &places = side == 0 ? kEFaceSideA : kEFaceSideB;
         Index const start = _parent.GetSideCorner(edge, side);
         Index const end = _parent.GetNextCorner(_parent.edgeFaces[edge][side], start);
         Index const otherStart = _parent.GetSideCorner(edge, 1 - side);
         Index const otherEnd = _parent.GetNextCorner(_parent.edgeFaces[edge][1 - side], otherStart);
-        Flags const ofStart = getParent(start);
-        Flags const ofEnd = getParent(end);
-        QuadFlag const beyond = getParent(otherEnd).in; // of the other side, at the start
-        made[places.startVertex] = {append(beyond, 3), append(ofStart.out, 3), fade(ofStart)};
-        made[places.endFVertex] = {append(ofEnd.in, 1), append(ofEnd.in, 2), fade(ofEnd)};
-        made[places.startFVertex] = {append(ofStart.out, 2), append(ofStart.out, 1), fade(ofStart)};
+        QuadFlags const atStart = getParent(start);
+        QuadFlags const atEnd = getParent(end);
+        QuadFlags const beyond = getParent(otherEnd); // at the start, on the other side
+        float const sharpness = std::max(atStart.sharpness, beyond.sharpness);
+        made[places.startVertex] = append({beyond.in, atStart.out, sharpness}, 3, 3);
+        made[places.endFVertex] = append({atEnd.in, atEnd.in, atEnd.sharpness}, 1, 2);
+        made[places.startFVertex] = append({atStart.out, atStart.out, atStart.sharpness}, 2, 1);
     }
     for (int local = 0; local < kHexagon; ++local) {
         function(first + local, made[local]);

@@ -7,6 +7,7 @@
 
 #include <cstddef>
 #include <cstring>
+#include <iterator>
 #include <map>
 #include <numeric>
 #include <unordered_map>
@@ -47,6 +48,17 @@ private:
     std::unordered_map<int, IrregularVertexMask> _masks;
 };
 
+// The tags of a face's corners among all of their kind.
+template <typename TAG>
+struct TagRange {
+    TAG const *first;
+    TAG const *behind;
+
+    TAG const *begin() const { return first; }
+    TAG const *end() const { return behind; }
+    bool empty() const { return first == behind; }
+};
+
 // Key of the rule of a face: equal keys have equal rules.
 struct FaceTags {
     Index firstCorner;
@@ -54,57 +66,48 @@ struct FaceTags {
     bool isHalf;
     float diagonal; // share of the rule of a sharp diagonal
     int diagonalEnd;
-    SectorCorner const *sectors;
-    SectorCorner const *endSectors;
-    IrregularCorner const *irregular;
-    IrregularCorner const *endIrregular;
-    QuadCorner const *quads;
-    QuadCorner const *endQuads;
+    TagRange<SectorCorner> sectorCorners;
+    TagRange<IrregularCorner> irregularCorners;
+    TagRange<QuadCorner> quadCorners;
 
     bool operator==(FaceTags const &other) const {
-        return isHalf == other.isHalf && size == other.size && diagonal == other.diagonal &&
-               diagonalEnd == other.diagonalEnd &&
-               std::equal(sectors, endSectors, other.sectors, other.endSectors,
-                          [&](SectorCorner const &x, SectorCorner const &y) {
-                              return x.corner - firstCorner == y.corner - other.firstCorner &&
-                                     x.weight == y.weight && x.sectorSize == y.sectorSize &&
-                                     x.kind == y.kind;
-                          }) &&
-               std::equal(irregular, endIrregular, other.irregular, other.endIrregular,
-                          [&](IrregularCorner const &x, IrregularCorner const &y) {
-                              constexpr std::size_t kFirst = offsetof(IrregularCorner, numFaces);
-                              return x.corner - firstCorner == y.corner - other.firstCorner &&
-                                     std::memcmp(&x.numFaces, &y.numFaces, sizeof x - kFirst) == 0;
-                          }) &&
-               std::equal(quads, endQuads, other.quads, other.endQuads,
-                          [&](QuadCorner const &x, QuadCorner const &y) {
-                              return x.corner - firstCorner == y.corner - other.firstCorner &&
-                                     x.out == y.out && x.in == y.in && x.sharpness == y.sharpness;
-                          });
+        bool result = isHalf == other.isHalf && size == other.size && diagonal == other.diagonal &&
+                      diagonalEnd == other.diagonalEnd;
+        CornerTags::ForEachKind(
+            [&](auto const &tags, auto const &otherTags) {
+                auto const isSame = [&](auto x, auto y) {
+                    x.corner -= firstCorner;
+                    y.corner -= other.firstCorner;
+                    return std::memcmp(&x, &y, sizeof x) == 0;
+                };
+                result = result && std::equal(tags.begin(), tags.end(), otherTags.begin(),
+                                              otherTags.end(), isSame);
+            },
+            *this, other);
+        return result;
     }
 
     struct Hash {
         std::size_t operator()(FaceTags const &tags) const {
             constexpr std::uint64_t kFactor = 0x9e3779b97f4a7c15u; // of Fibonacci hashing
             auto hash = std::uint64_t(tags.size) << 1 | std::uint64_t(tags.isHalf);
-            auto const add = [&hash](float weight, Index rest) {
-                std::uint64_t const high = getBits(weight);
-                hash = (hash ^ (high << 32 | std::uint32_t(rest))) * kFactor;
+            auto const add = [&hash](std::uint32_t high, std::uint32_t low) {
+                hash = (hash ^ (std::uint64_t(high) << 32 | low)) * kFactor;
             };
-            add(tags.diagonal, tags.diagonalEnd);
-            for (SectorCorner const *sector = tags.sectors; sector != tags.endSectors; ++sector) {
-                add(sector->weight, sector->corner - tags.firstCorner);
-                add(sector->sectorSize, sector->kind);
-            }
-            for (IrregularCorner const *corner = tags.irregular; corner != tags.endIrregular;
-                 ++corner) {
-                add(corner->weight, (corner->corner - tags.firstCorner) ^ corner->kind << 8 ^
-                                        int(corner->facesAround) << 12 ^ corner->numFaces << 16);
-            }
-            for (QuadCorner const *quad = tags.quads; quad != tags.endQuads; ++quad) {
-                add(quad->sharpness,
-                    (quad->corner - tags.firstCorner) ^ quad->out << 4 ^ quad->in << 16);
-            }
+            add(getBits(tags.diagonal), std::uint32_t(tags.diagonalEnd));
+            CornerTags::ForEachKind(
+                [&](auto const &ofKind) {
+                    for (auto tag : ofKind) {
+                        tag.corner -= tags.firstCorner;
+                        constexpr std::size_t kNumWords = sizeof tag / sizeof(std::uint32_t);
+                        std::uint32_t words[kNumWords + 1] = {};
+                        std::memcpy(words, &tag, sizeof tag);
+                        for (std::size_t i = 0; i < kNumWords; i += 2) {
+                            add(words[i], words[i + 1]);
+                        }
+                    }
+                },
+                tags);
             hash ^= hash >> 32;
             return std::size_t(hash);
         }
@@ -148,86 +151,13 @@ void RefinementRules::endFaceRuns() {
     }
 }
 
-// A vertex has them where the paths of all of its corners tell one.
-void RefinementRules::makeVertexWeights() {
-    if (_level.quadCorners.empty()) {
-        return;
-    }
-    struct OfCorner {
-        float weight = -1; // with so few digits it is exact
-        float share = 0;
-    };
-    Buffer<OfCorner> ofCorners;
-    ofCorners.Resize(std::size_t(_level.numCorners));
-    std::fill_n(ofCorners.data(), ofCorners.size(), OfCorner());
-    IrregularMasks masks(_level.numHexagonalSteps);
-    ParallelFor(Index(_level.quadCorners.size()), [&](Index i) {
-        QuadCorner const &quad = _level.quadCorners[std::size_t(i)];
-        ofCorners[std::size_t(quad.corner)] = {
-            float(FindQuadRow(_level.numHexagonalSteps, quad.out, quad.in).vertexWeight),
-            quad.GetShare()};
-    });
-    _weightsOfVerts.Resize(std::size_t(_level.numVertices));
-    std::map<std::vector<double>, int> positions;
-    std::vector<double> weights;
-    for (Index vert = 0; vert < _level.numVertices; ++vert) {
-        weights.assign(1, 1.0);
-        float share = 0;
-        for (Index k = _level.vertFirstFace[vert]; k < _level.vertFirstFace[vert + 1]; ++k) {
-            OfCorner const &ofCorner = ofCorners[std::size_t(_level.GetVertexCorner(k))];
-            weights.push_back(ofCorner.weight);
-            weights[0] -= weights.back();
-            share = ofCorner.share; // all are of one vertex of quads
-        }
-        bool const isPlain = share == 0 || weights.size() == 1 ||
-                             *std::min_element(weights.begin() + 1, weights.end()) < 0;
-        if (!isPlain && share < 1) {
-            int const numFaces = int(weights.size()) - 1;
-            VertexVertexMask other = GetPlainVertexMask(numFaces);
-            if (IrregularVertex const *const irregular = _level.FindIrregularVertex(vert)) {
-                VertexVertexMask const &mask = masks.Get(numFaces).vertex;
-                other.vertexWeight += irregular->weight * (mask.vertexWeight - other.vertexWeight);
-                other.faceWeight += irregular->weight * (mask.faceWeight - other.faceWeight);
-            }
-            for (std::size_t i = 0; i < weights.size(); ++i) {
-                double const rest = i == 0 ? other.vertexWeight : other.faceWeight;
-                weights[i] = rest + double(share) * (weights[i] - rest);
-            }
-        }
-        int &ofVert = _weightsOfVerts[std::size_t(vert)];
-        ofVert = kPlain;
-        if (!isPlain) {
-            auto const [found, isNew] = positions.try_emplace(weights, int(_vertexWeights.size()));
-            if (isNew) {
-                _vertexWeights.insert(_vertexWeights.end(), weights.begin(), weights.end());
-            }
-            ofVert = found->second;
-        }
-    }
-}
-
-// Appends the weights of a sharp vertex, in which those at a position have a share in place of plain ones.
-void RefinementRules::addVertexWeights(int smooth, double share, VertexRule &rule, int numFaces) {
-    VertexVertexMask const plain = GetPlainVertexMask(numFaces);
-    auto const first = std::size_t(smooth);
-    double &ofVertex = rule.weights[rule.numSources - 1];
-    ofVertex += share * (_vertexWeights[first] - plain.vertexWeight);
-    _vertexWeights.push_back(ofVertex);
-    for (int i = 1; i <= numFaces; ++i) {
-        double const weight = _vertexWeights[first + std::size_t(i)];
-        _vertexWeights.push_back(rule.faceWeight + share * (weight - plain.faceWeight));
-    }
-}
-
-// Sharp vertices have their rules; in an irregular vertex, and in one with weights by face, the smooth one has the share
-// that these leave.
+// Sharp vertices have their rules; in an irregular vertex, the smooth one has the share that these leave.
 void RefinementRules::makeRuledVertices(bool hasIrregular) {
     _ruledVertices.reserve(_level.sharpVerts.size() +
                            (hasIrregular ? _level.irregularVerts.size() : 0));
     auto nextIrregular = _level.irregularVerts.begin();
     auto const endIrregular = hasIrregular ? _level.irregularVerts.end() : nextIrregular;
     IrregularMasks masks(_level.numHexagonalSteps);
-    std::vector<std::pair<std::size_t, std::size_t>> byFace; // with positions of weights
     auto const addIrregular = [&](IrregularVertex const &irregular, double smoothShare,
                                   VertexRule &rule) {
         int const numFaces = _level.GetNumVertexFaces(irregular.vert);
@@ -239,7 +169,7 @@ void RefinementRules::makeRuledVertices(bool hasIrregular) {
     };
     auto const addIrregularBefore = [&](Index vert) {
         for (; nextIrregular != endIrregular && nextIrregular->vert < vert; ++nextIrregular) {
-            if (nextIrregular->weight > 0 && GetVertexWeights(nextIrregular->vert) == kPlain) {
+            if (nextIrregular->weight > 0) {
                 Index const index = nextIrregular->vert;
                 VertexRule rule = plainRule(index, _level.GetNumVertexFaces(index));
                 addIrregular(*nextIrregular, 1, rule);
@@ -260,23 +190,114 @@ void RefinementRules::makeRuledVertices(bool hasIrregular) {
             }
         }
         add(sharp.vert, sharp.vertexWeight);
-        bool const isIrregular = nextIrregular != endIrregular && nextIrregular->vert == sharp.vert;
-        if (int const smooth = GetVertexWeights(sharp.vert);
-            smooth != kPlain && sharp.smoothShare > 0) {
-            byFace.emplace_back(_ruledVertices.size(), _vertexWeights.size());
-            addVertexWeights(smooth, sharp.smoothShare, rule, _level.GetNumVertexFaces(sharp.vert));
-        } else if (isIrregular) {
-            addIrregular(*nextIrregular, sharp.smoothShare, rule);
+        if (nextIrregular != endIrregular && nextIrregular->vert == sharp.vert) {
+            addIrregular(*nextIrregular++, sharp.smoothShare, rule);
         }
-        nextIrregular += isIrregular ? 1 : 0;
         _ruledVertices.push_back({sharp.vert, rule});
     }
     addIrregularBefore(_level.numVertices);
-    for (auto const &[ruled, position] : byFace) {
-        VertexRule &rule = _ruledVertices[ruled].rule;
-        rule.faceWeights = _vertexWeights.data() + position + 1;
+}
+
+// Where the paths of all corners of a vertex tell its weights, these have the share that its sharpness leaves.
+void RefinementRules::makeVertexWeights() {
+    if (_level.quadCorners.empty() || _level.numVertices == 0) {
+        return;
+    }
+    struct OfCorner {
+        float weight = -1; // with so few digits it is exact
+        float share = 0;
+    };
+    auto const find = [this](QuadCorner const &quad) -> OfCorner {
+        QuadRow const row = FindQuadRow(_level.numHexagonalSteps, quad.flags);
+        return {float(row.vertexWeight), quad.flags.GetShare()};
+    };
+    // In the constant levels few vertices have such weights, and have rules of their own.
+    bool const areFew = _level.numHexagonalSteps >= kNumStepsToConstantMasks;
+    std::vector<Index> few;
+    Buffer<OfCorner> ofCorners;
+    if (areFew) {
+        for (QuadCorner const &quad : _level.quadCorners) {
+            few.push_back(_level.faceVerts[quad.corner]);
+        }
+        SortUnique(few);
+    } else {
+        ofCorners.Resize(std::size_t(_level.numCorners));
+        std::fill_n(ofCorners.data(), ofCorners.size(), OfCorner());
+        ParallelFor(Index(_level.quadCorners.size()), [&](Index i) {
+            QuadCorner const &quad = _level.quadCorners[std::size_t(i)];
+            ofCorners[std::size_t(quad.corner)] = find(quad);
+        });
+        _weightsOfVerts.Resize(std::size_t(_level.numVertices));
+        std::fill_n(_weightsOfVerts.data(), _weightsOfVerts.size(), kPlain);
+    }
+    auto const findOf = [&](Index corner) {
+        if (!areFew) {
+            return ofCorners[std::size_t(corner)];
+        }
+        auto const quads = FindCornerTags(_level.quadCorners, corner, corner + 1);
+        return quads.empty() ? OfCorner() : find(quads[0]);
+    };
+    std::map<std::vector<double>, int> positions;
+    std::vector<double> weights;
+    std::vector<RuledVertex> ruled;
+    std::vector<int> positionsOfRuled;
+    Index const count = areFew ? Index(few.size()) : _level.numVertices;
+    for (Index i = 0; i < count; ++i) {
+        Index const vert = areFew ? few[std::size_t(i)] : i;
+        weights.assign(1, 1.0);
+        double share = 0; // all corners have the same
+        for (Index k = _level.vertFirstFace[vert]; k < _level.vertFirstFace[vert + 1]; ++k) {
+            OfCorner const ofCorner = findOf(_level.GetVertexCorner(k));
+            share = ofCorner.weight < 0 ? 0 : double(ofCorner.share);
+            if (share == 0) {
+                break;
+            }
+            weights.push_back(double(ofCorner.weight));
+            weights[0] -= weights.back();
+        }
+        if (share == 0) {
+            continue;
+        }
+        VertexRule rule = {0, 1, {vert}, {weights[0]}, nullptr};
+        if (share < 1) {
+            rule = GetVertexRule(vert);
+            for (double &weight : rule.weights) {
+                weight *= 1 - share;
+            }
+            double &ofVertex = rule.weights[rule.numSources - 1];
+            ofVertex += share * weights[0];
+            weights[0] = ofVertex;
+            for (std::size_t j = 1; j < weights.size(); ++j) {
+                weights[j] = rule.faceWeight + share * (weights[j] - rule.faceWeight);
+            }
+        }
+        auto const [found, isNew] = positions.try_emplace(weights, int(_vertexWeights.size()));
+        if (isNew) {
+            _vertexWeights.insert(_vertexWeights.end(), weights.begin(), weights.end());
+        }
+        if (areFew || rule.numSources > 1) {
+            ruled.push_back({vert, rule});
+            positionsOfRuled.push_back(found->second);
+        } else {
+            _weightsOfVerts[std::size_t(vert)] = found->second;
+        }
+    }
+    for (std::size_t i = 0; i < ruled.size(); ++i) {
+        VertexRule &rule = ruled[i].rule;
+        rule.faceWeights = _vertexWeights.data() + positionsOfRuled[i] + 1;
         rule.faceWeight = rule.faceWeights[0];
     }
+    // They take the place of those that vertices had.
+    std::vector<RuledVertex> before;
+    before.swap(_ruledVertices);
+    std::set_union(ruled.begin(), ruled.end(), before.begin(), before.end(),
+                   std::back_inserter(_ruledVertices),
+                   [](RuledVertex const &x, RuledVertex const &y) { return x.vert < y.vert; });
+    _ruledVertices.erase(std::remove_if(_ruledVertices.begin(), _ruledVertices.end(),
+                                        [this](RuledVertex const &vertex) {
+                                            return GetVertexWeights(vertex.vert) != kPlain;
+                                        }),
+                         _ruledVertices.end());
 }
 
 // Finds the faces that are not circulant, and makes a rule for each kind of them.
@@ -290,31 +311,24 @@ public:
     void Make() {
         std::vector<Index> const sharpFaces = findSharpFaces();
         auto nextSharp = sharpFaces.begin();
-        IrregularCorner const *const endCorners =
-            _level.irregularCorners.data() + _level.irregularCorners.size();
-        IrregularCorner const *nextCorner = _isVertex ? _level.irregularCorners.data() : endCorners;
         std::unordered_map<FaceTags, int, FaceTags::Hash> ruleOfTags;
         FaceTags before = {}; // of the last face: those that follow one another are mostly alike
         FaceTags tags = {};
-        tags.sectors = tags.endSectors = _level.sectorCorners.data();
-        tags.irregular = tags.endIrregular = _level.irregularCorners.data();
-        tags.quads = tags.endQuads = _level.quadCorners.data();
-        QuadCorner const *const endQuads = tags.quads + (_isVertex ? _level.quadCorners.size() : 0);
-        QuadCorner const *nextQuad = tags.quads;
+        CornerTags::ForEachKind(
+            [](auto const &all, auto &read) {
+                read = {all.data(), all.data()};
+            },
+            _level, tags);
         int rule = kCirculant;
-        while (nextSharp != sharpFaces.end() || nextCorner != endCorners || nextQuad != endQuads) {
-            Index face = nextSharp != sharpFaces.end() ? *nextSharp : _level.numFaces;
-            if (nextCorner != endCorners) {
-                face = std::min(face, _level.FindFaceOfCorner(nextCorner->corner));
+        for (;;) {
+            Index face = findNextFace(tags);
+            if (nextSharp != sharpFaces.end() && *nextSharp <= face) {
+                face = *nextSharp++;
             }
-            if (nextQuad != endQuads) {
-                face = std::min(face, findFaceOfNext(nextQuad->corner));
+            if (face == _level.numFaces) {
+                break;
             }
-            nextSharp += nextSharp != sharpFaces.end() && *nextSharp == face;
             readTags(face, tags);
-            _endRead = face + 1;
-            nextCorner = std::max(nextCorner, tags.endIrregular);
-            nextQuad = std::max(nextQuad, tags.endQuads);
             if (!hasOwnRows(tags)) {
                 continue;
             }
@@ -336,23 +350,17 @@ public:
 private:
     std::vector<Index> findSharpFaces() const;
     void addFace(Index face, int rule);
-    void readTags(Index face, FaceTags &tags) const;
-    // The row that a path tells of a corner, whose entry is the next one, if it is not behind it.
-    QuadRow readQuadRow(QuadCorner const *&quad, QuadCorner const *end, Index corner) const {
-        while (quad != end && quad->corner < corner) {
-            ++quad;
-        }
-        return quad != end && quad->corner == corner
-                   ? FindQuadRow(_level.numHexagonalSteps, quad->out, quad->in)
-                   : QuadRow{nullptr, false, -1};
+    void readTags(Index face, FaceTags &tags);
+    QuadRow findQuadRow(QuadCorner const &quad) const {
+        return FindQuadRow(_level.numHexagonalSteps, quad.flags);
     }
     bool hasOwnRows(FaceTags const &tags) const;
-    Index findFaceOfNext(Index corner) const;
+    Index findNextFace(FaceTags const &read) const;
     void addRule(FaceTags const &tags);
     void addRow(std::vector<double> const &row);
     static void addMask(double const (&mask)[kHexagon], int corner, bool isBackwards, double share,
                         std::vector<double> &row);
-    void addIrregularWeights(IrregularCorner const &irregular, int corner, double factor,
+    void addIrregularWeights(IrregularCorner const &irregular, int corner,
                              std::vector<double> &row);
     // The entries of one corner.
     struct Sectors {
@@ -378,7 +386,7 @@ private:
     Index _endRead = 0;  // behind the last face whose tags were read
 };
 
-// Faces with other features than irregular corners, ascending.
+// Faces with a feature that is no tag of a corner, ascending.
 std::vector<Index> RefinementRules::DenseRuleMaker::findSharpFaces() const {
     std::vector<Index> faces(_level.halfFaces.begin(), _level.halfFaces.end());
     if (!_isVertex) {
@@ -388,9 +396,6 @@ std::vector<Index> RefinementRules::DenseRuleMaker::findSharpFaces() const {
         if (Sdc::Crease::IsSharp(_level.diagonalSharpness[face])) {
             faces.push_back(Index(face));
         }
-    }
-    for (SectorCorner const &sector : _level.sectorCorners) {
-        faces.push_back(_level.FindFaceOfCorner(sector.corner));
     }
     SortUnique(faces);
     return faces;
@@ -409,24 +414,41 @@ void RefinementRules::DenseRuleMaker::addFace(Index face, int rule) {
 }
 
 // Corners are read on from those of the faces before.
-void RefinementRules::DenseRuleMaker::readTags(Index face, FaceTags &tags) const {
+void RefinementRules::DenseRuleMaker::readTags(Index face, FaceTags &tags) {
     tags.firstCorner = _level.faceFirstCorner[face];
     tags.size = _level.GetFaceSize(face);
     tags.isHalf = _level.IsHalfFace(face);
     tags.diagonal = std::min(1.0f, _level.GetDiagonalSharpness(face));
     tags.diagonalEnd = tags.diagonal > 0 ? _level.GetDiagonalEnd(face) : 0;
-    auto const readOn = [end = tags.firstCorner + tags.size](auto const &all, auto const *&begin,
-                                                             auto const *&behind) {
-        begin = behind;
-        while (behind != all.data() + all.size() && behind->corner < end) {
-            ++behind;
-        }
-    };
-    if (_isVertex) {
-        readOn(_level.sectorCorners, tags.sectors, tags.endSectors);
-        readOn(_level.irregularCorners, tags.irregular, tags.endIrregular);
-        readOn(_level.quadCorners, tags.quads, tags.endQuads);
+    _endRead = face + 1;
+    if (!_isVertex) {
+        return;
     }
+    CornerTags::ForEachKind(
+        [end = tags.firstCorner + tags.size](auto const &all, auto &read) {
+            read.first = read.behind;
+            while (read.behind != all.data() + all.size() && read.behind->corner < end) {
+                ++read.behind;
+            }
+        },
+        _level, tags);
+}
+
+// The first face with tags of corners behind those that have been read, mostly the next one; else the end.
+Index RefinementRules::DenseRuleMaker::findNextFace(FaceTags const &read) const {
+    Index corner = _level.numCorners;
+    CornerTags::ForEachKind(
+        [&corner](auto const &all, auto const &ofKind) {
+            if (ofKind.behind != all.data() + all.size()) {
+                corner = std::min(corner, ofKind.behind->corner);
+            }
+        },
+        _level, read);
+    if (!_isVertex || corner == _level.numCorners) {
+        return _level.numFaces;
+    }
+    return corner < _level.faceFirstCorner[_endRead + 1] ? _endRead
+                                                         : _level.FindFaceOfCorner(corner);
 }
 
 void RefinementRules::DenseRuleMaker::addRow(std::vector<double> const &row) {
@@ -436,21 +458,13 @@ void RefinementRules::DenseRuleMaker::addRow(std::vector<double> const &row) {
 
 // Whether any corner does not follow the circulant mask: flags alone are no reason.
 bool RefinementRules::DenseRuleMaker::hasOwnRows(FaceTags const &tags) const {
-    if (tags.isHalf || tags.diagonal > 0 || tags.sectors != tags.endSectors ||
-        tags.irregular != tags.endIrregular) {
-        return true;
-    }
-    return tags.size == kHexagon &&
-           std::any_of(tags.quads, tags.endQuads, [this](QuadCorner const &quad) {
-               return quad.GetShare() > 0 &&
-                      FindQuadRow(_level.numHexagonalSteps, quad.out, quad.in).mask != nullptr;
-           });
-}
-
-// The face of a corner, which lies behind those that have been read: mostly in the next face.
-Index RefinementRules::DenseRuleMaker::findFaceOfNext(Index corner) const {
-    bool const isNext = _endRead < _level.numFaces && corner < _level.faceFirstCorner[_endRead + 1];
-    return isNext ? _endRead : _level.FindFaceOfCorner(corner);
+    return tags.isHalf || tags.diagonal > 0 || !tags.sectorCorners.empty() ||
+           !tags.irregularCorners.empty() ||
+           (tags.size == kHexagon && std::any_of(tags.quadCorners.begin(), tags.quadCorners.end(),
+                                                 [this](QuadCorner const &quad) {
+                                                     return quad.flags.GetShare() > 0 &&
+                                                            findQuadRow(quad).mask != nullptr;
+                                                 }));
 }
 
 // Corners of a face with nothing of their own have the rows of its circulant rule.
@@ -458,35 +472,37 @@ void RefinementRules::DenseRuleMaker::addRule(FaceTags const &tags) {
     int const size = tags.size;
     _rules._denseRules.push_back({size, _rules._rows.size()});
     double const sharp = tags.isHalf ? 1 : tags.diagonal;
-    SectorCorner const *sector = tags.sectors;
-    IrregularCorner const *irregular = tags.irregular;
-    QuadCorner const *quad = tags.quads;
+    SectorCorner const *sector = tags.sectorCorners.begin();
+    IrregularCorner const *irregular = tags.irregularCorners.begin();
+    QuadCorner const *quad = tags.quadCorners.begin();
     for (int i = 0; i < size; ++i) {
         Index const corner = tags.firstCorner + i;
         double towards = 0;
         bool hasOneFace = false;
         SectorCorner const *const sectors = sector;
-        for (; sector != tags.endSectors && sector->corner == corner; ++sector) {
+        for (; sector != tags.sectorCorners.end() && sector->corner == corner; ++sector) {
             if (sector->kind == SectorCorner::kInWide) {
                 towards +=
                     sector->weight * (1 - ComputeSectorShrink(_faceMask, sector->sectorSize));
             }
             hasOneFace = hasOneFace || sector->kind != SectorCorner::kInWide;
         }
-        bool const isIrregular = irregular != tags.endIrregular && irregular->corner == corner;
+        IrregularCorner const *const ofIrregular =
+            irregular != tags.irregularCorners.end() && irregular->corner == corner ? irregular++
+                                                                                    : nullptr;
+        QuadCorner const *const ofQuad =
+            quad != tags.quadCorners.end() && quad->corner == corner ? quad++ : nullptr;
+        QuadRow const byPath =
+            ofQuad && size == kHexagon ? findQuadRow(*ofQuad) : QuadRow{nullptr, false, -1};
+        float const ofPath = byPath.mask ? ofQuad->flags.GetShare() : 0;
         std::size_t const circulantRow =
             _rules._circulants[std::size_t(size)] + std::size_t(size - i);
-        QuadRow const byPath = size == kHexagon ? readQuadRow(quad, tags.endQuads, corner)
-                                                : QuadRow{nullptr, false, -1};
-        if (sharp == 0 && towards == 0 && !hasOneFace && !isIrregular && !byPath.mask) {
+        if (sharp == 0 && towards == 0 && !hasOneFace && !ofIrregular && ofPath == 0) {
             _rules._rows.push_back(circulantRow);
             continue;
         }
         auto const circulant = _rules._weights.begin() + std::ptrdiff_t(circulantRow);
         std::vector<double> row(circulant, circulant + size);
-        if (byPath.mask) {
-            addMask(*byPath.mask, i, byPath.isBackwards, quad->GetShare(), row);
-        }
         for (double &weight : row) {
             weight *= 1 - sharp - towards;
         }
@@ -519,9 +535,11 @@ void RefinementRules::DenseRuleMaker::addRule(FaceTags const &tags) {
         } else if (hasOneFace) {
             addOneFace({sectors, sector}, i, row);
         }
-        if (isIrregular) {
-            double const besidePath = byPath.mask ? 1 - double(quad->GetShare()) : 1;
-            addIrregularWeights(*irregular++, i, besidePath, row);
+        if (ofIrregular && ofPath < 1) {
+            addIrregularWeights(*ofIrregular, i, row);
+        }
+        if (ofPath > 0) {
+            addMask(*byPath.mask, i, byPath.isBackwards, ofPath, row);
         }
         addRow(row);
     }
@@ -587,8 +605,7 @@ void RefinementRules::DenseRuleMaker::addMask(double const (&mask)[kHexagon], in
 
 // The corner is number \p corner of its face, whose weights these are so far.
 void RefinementRules::DenseRuleMaker::addIrregularWeights(IrregularCorner const &irregular,
-                                                          int corner, double factor,
-                                                          std::vector<double> &row) {
+                                                          int corner, std::vector<double> &row) {
     using Kind = IrregularCorner::Kind;
     Kind const kind = irregular.kind;
     double const(*mask)[kHexagon] = nullptr;
@@ -601,7 +618,7 @@ void RefinementRules::DenseRuleMaker::addIrregularWeights(IrregularCorner const 
     }
     bool const isBackwards =
         kind == Kind::kBeforeVertex || kind == Kind::kBehindQuad || kind == Kind::kOneBeforeQuad;
-    addMask(*mask, corner, isBackwards, factor * irregular.weight, row);
+    addMask(*mask, corner, isBackwards, irregular.weight, row);
 }
 
 RefinementRules::RefinementRules(Level const &parent, HexSchemeOptions schemeOptions,
@@ -614,10 +631,10 @@ RefinementRules::RefinementRules(Level const &parent, HexSchemeOptions schemeOpt
     bool const isHexagonal = _step == StepType::Hexagonal;
     makeCirculantRules();
     if (interpolation == Interpolation::Vertex) {
+        makeRuledVertices(isHexagonal);
         if (isHexagonal) {
             makeVertexWeights();
         }
-        makeRuledVertices(isHexagonal);
     }
     if (isHexagonal && parent.HasFeatures()) {
         DenseRuleMaker(*this, _faceMask).Make();

@@ -186,7 +186,6 @@ private:
     void makeCirculantRules();
     void endFaceRuns();
     void makeVertexWeights();
-    void addVertexWeights(int smooth, double share, VertexRule &rule, int numFaces);
     void makeRuledVertices(bool hasIrregular);
 
     Level const &_level;

@@ -5,7 +5,10 @@ A TopologyRefiner takes a base mesh as arrays and refines it; its levels are arr
 as positions, are refined with a RefinementEvaluator, with a StencilTable and one of the evaluators
 CpuEvaluator and ParallelEvaluator, or level by level with a PrimvarRefiner.  A LimitStencilTable has
 points and tangents of the limit surface, a PatchTable patches close to it for any place, a
-SurfaceFactory the surfaces of the base faces, and SurfacePlaces any number of places on these.
+SurfaceFactory the surfaces of the base faces, and SurfacePlaces any number of places on these.  A
+View refines faces as far as a Camera sees, and a PatchStream evaluates all faces in bounded memory.
+
+Refiners, cameras, views, tessellations of levels and all options can be copied and pickled.
 
 Names are those of the C++ API, in Python's spelling.  Values are float32 arrays.  What a
 function reads may have any type of number and any layout, and may be a list: float32 (or float64,
@@ -41,7 +44,7 @@ def _show(cls, *names):
             values = [f"{name}={getattr(self, name)!r}" for name in names]
         except RuntimeError as error:  # a level that is out of date
             values = [str(error)]
-        return f"<{cls.__name__} {', '.join(values)}>"
+        return f"<{' '.join([cls.__name__, ', '.join(values)]).strip()}>"
     cls.__repr__ = represent
 
 
@@ -52,6 +55,15 @@ _show(StencilTable, "num_stencils", "num_control_vertices")
 _show(CompactStencilTable, "num_stencils", "num_control_vertices", "num_bytes")
 _show(PatchTable, "num_patches", "num_control_vertices", "num_fvar_channels")
 _show(RefinementEvaluator, "max_level", "num_elements_all_levels")
+_show(PrimvarRefiner)
 _show(LevelTessellation, "face_size", "levels")
+_show(SurfaceFactory, "num_faces")
 _show(Surface, "face_size")
 _show(SurfacePlaces, "num_places")
+_show(Camera, "eye", "target", "up", "field_of_view", "width", "height")
+_show(View, "camera", "flatness", "edge_length", "max_level", "culling", "hysteresis")
+_show(ViewBounds, "memory")
+_show(CellForest, "num_faces", "num_cells")
+_show(Patch, "face", "tessellation")
+_show(PatchStream, "num_faces")
+_show(ExecutorScope)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-from typing import Any, Iterable, Literal, Sequence
+from typing import Any, Callable, Iterable, Literal, Sequence
 
 import numpy as np
 from numpy.typing import ArrayLike, DTypeLike, NDArray
@@ -316,6 +316,8 @@ class Surface:
 
 class SurfaceFactory:
     def __init__(self, refiner: TopologyRefiner) -> None: ...
+    @property
+    def num_faces(self) -> int: ...
     def face_varying_surface(self, face: int, channel: int = 0) -> Surface: ...
     def has_limit_surface(self, face: int) -> bool: ...
     def varying_surface(self, face: int) -> Surface: ...
@@ -344,12 +346,14 @@ class LevelTessellation:
         self,
         face_size: int,
         levels: int | ArrayLike,
-        facet_size: int = 3,
+        facet_size: Literal[0, 3, 4] = 3,
     ) -> None: ...
     @property
     def coords(self) -> NDArray[np.float64]: ...
     @property
     def face_size(self) -> int: ...
+    @property
+    def facet_size(self) -> int: ...
     @property
     def facet_sizes(self) -> NDArray[np.int32]: ...
     @property
@@ -358,6 +362,133 @@ class LevelTessellation:
     def levels(self) -> list[int]: ...
     @property
     def num_boundary_coords(self) -> int: ...
+
+class Camera:
+    def __init__(
+        self,
+        eye: ArrayLike,
+        target: ArrayLike = (0, 0, 0),
+        up: ArrayLike = (0, 1, 0),
+        field_of_view: float = 40.0,
+        width: int = 1280,
+        height: int = 720,
+    ) -> None: ...
+    @property
+    def eye(self) -> tuple[float, float, float]: ...
+    @property
+    def target(self) -> tuple[float, float, float]: ...
+    @property
+    def up(self) -> tuple[float, float, float]: ...
+    @property
+    def field_of_view(self) -> float: ...
+    @property
+    def width(self) -> int: ...
+    @property
+    def height(self) -> int: ...
+
+class View:
+    def __init__(
+        self,
+        camera: Camera,
+        *,
+        flatness: float = 0.5,
+        edge_length: float = 0.0,
+        max_level: int = 8,
+        culling: bool = False,
+        hysteresis: float = 0.5,
+    ) -> None: ...
+    @property
+    def camera(self) -> Camera: ...
+    @property
+    def flatness(self) -> float: ...
+    @property
+    def edge_length(self) -> float: ...
+    @property
+    def max_level(self) -> int: ...
+    @property
+    def culling(self) -> bool: ...
+    @property
+    def hysteresis(self) -> float: ...
+    def make_forest(
+        self,
+        factory: SurfaceFactory | ViewBounds,
+        points: ArrayLike,
+        previous: CellForest | None = None,
+    ) -> CellForest: ...
+
+class ViewBounds:
+    def __init__(self, factory: SurfaceFactory, max_memory: int = 268435456) -> None: ...
+    @property
+    def memory(self) -> int: ...
+    def clear(self) -> None: ...
+
+class CellForest:
+    @property
+    def num_faces(self) -> int: ...
+    @property
+    def num_cells(self) -> int: ...
+    @property
+    def cells_by_level(self) -> list[int]: ...
+    @property
+    def num_outside(self) -> int: ...
+    @property
+    def num_back_facing(self) -> int: ...
+    @property
+    def num_boundary_points(self) -> int: ...
+    def tessellation(
+        self,
+        face: int,
+        facet_size: Literal[0, 3, 4] = 3,
+    ) -> LevelTessellation: ...
+    def boundary_points(self, face: int) -> NDArray[np.int32]: ...
+
+class Patch:
+    @property
+    def face(self) -> int: ...
+    @property
+    def tessellation(self) -> LevelTessellation: ...
+    @property
+    def points(self) -> NDArray[Any]: ...
+    @property
+    def du(self) -> NDArray[Any] | None: ...
+    @property
+    def dv(self) -> NDArray[Any] | None: ...
+    @property
+    def varying(self) -> NDArray[Any] | None: ...
+    @property
+    def fvar_values(self) -> list[NDArray[Any]]: ...
+
+class PatchStream:
+    def __init__(
+        self,
+        factory: SurfaceFactory,
+        levels: int | tuple[ArrayLike, ArrayLike] | CellForest,
+        *,
+        facet_size: Literal[0, 3, 4] = 3,
+        derivatives: bool = False,
+        max_memory: int = 4194304,
+    ) -> None: ...
+    @property
+    def num_faces(self) -> int: ...
+    def run(
+        self,
+        points: ArrayLike,
+        sink: Callable[[Patch], bool | None],
+        *,
+        varying: ArrayLike | None = None,
+        fvar_values: Sequence[ArrayLike] | None = None,
+        begin_face: int = 0,
+        end_face: int | None = None,
+    ) -> bool: ...
+    def evaluate(
+        self,
+        points: ArrayLike,
+        *,
+        varying: ArrayLike | None = None,
+        fvar_values: Sequence[ArrayLike] | None = None,
+        begin_face: int = 0,
+        end_face: int | None = None,
+    ) -> dict[str, Any]: ...
 
 class TopologyLevel:
     @property

@@ -13,6 +13,10 @@ import pytest
 STUBS = ast.parse((pathlib.Path(osh.__file__).parent / "__init__.pyi").read_text())
 
 
+def split_arguments(text):
+    return [argument for argument in re.sub(r"\s", "", text).split(",") if argument]
+
+
 def list_arguments(function):
     """Names and defaults, as Python source: ["level", "full=False", "*", ...]."""
     arguments = function.args
@@ -21,12 +25,9 @@ def list_arguments(function):
     listed = list(zip(plain, defaults))
     if arguments.kwonlyargs:
         listed += [(ast.arg("*"), None)] + list(zip(arguments.kwonlyargs, arguments.kw_defaults))
-    return [a.arg if d is None else f"{a.arg}={ast.literal_eval(d)!r}"
-            for a, d in listed if a.arg != "self"]
-
-
-def split_arguments(text):
-    return [argument for argument in re.sub(r"\s", "", text).split(",") if argument]
+    return split_arguments(",".join(
+        a.arg if d is None else f"{a.arg}={ast.literal_eval(d)!r}"
+        for a, d in listed if a.arg != "self"))
 
 
 def list_functions():
@@ -86,6 +87,9 @@ def test_everything_is_documented():
         if name.startswith("_") or not callable(value):
             continue
         assert value.__doc__ and len(value.__doc__) > 10, name
+        if isinstance(value, type) and not hasattr(value, "__members__"):
+            for member, what in vars(value).items():
+                assert member.startswith("_") or len(what.__doc__ or "") > 4, (name, member)
 
 
 def test_stubs_have_the_docstrings_of_the_module():

@@ -60,9 +60,9 @@ def test_surfaces_behind_a_first_step_are_those_of_level_1(first_step):
         with pytest.raises(ValueError):
             surface.evaluate(tessellation, POSITIONS)
     refiner.refine_uniform(2)
-    with pytest.raises(osh.StatusError, match="refined again"):
+    with pytest.raises(RuntimeError, match="refined again"):
         factory.has_limit_surface(0)
-    with pytest.raises(osh.StatusError, match="refined again"):
+    with pytest.raises(RuntimeError, match="refined again"):
         factory.vertex_surface(0)
 
 
@@ -254,7 +254,7 @@ def test_places_behind_a_first_step_are_in_faces_of_level_1():
     with pytest.raises(ValueError, match="points"):
         places.evaluate(POSITIONS)
     refiner.refine_uniform(2)
-    with pytest.raises(osh.StatusError, match="refined again"):
+    with pytest.raises(RuntimeError, match="refined again"):
         osh.SurfacePlaces(factory, [last], [[0.5, 0.3]])
 
 
@@ -347,3 +347,15 @@ def test_errors_name_the_argument(factory):
         holes.vertex_surface(4)
     with pytest.raises(osh.StatusError):
         osh.SurfaceFactory(make_refiner(scheme_type="doo_sabin"))
+
+
+def test_faces_that_depend_on_too_many_others_have_no_surface():
+    count = 600  # around vertex 0; at most 512 are taken
+    ring = np.arange(count)
+    faces = np.stack([np.zeros(count, int), 1 + ring, 1 + (ring + 1) % count], axis=1)
+    factory = osh.SurfaceFactory(osh.TopologyRefiner(faces, vtx_boundary_interpolation="edge_only"))
+    assert factory.num_faces == count
+    assert not factory.has_limit_surface(0)
+    with pytest.raises(osh.StatusError, match="vertex 0") as caught:
+        factory.vertex_surface(0)
+    assert caught.value.component == osh.ComponentType.VERTEX

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The interpreter's lock is released while the library works, and threads share what they may."""
 
+import copy
 import threading
 import time
 
@@ -43,7 +44,12 @@ def test_other_threads_run_while_the_library_works():
         refiner.refine_uniform(5)
         table, values = osh.StencilTable(refiner, max_level=4), []
         values.append(osh.CpuEvaluator.eval_stencils(table, positions))
+        surfaces = osh.SurfaceFactory(osh.TopologyRefiner(faces, face_mask="smooth"))
+        stream, view = osh.PatchStream(surfaces, 6), osh.View(osh.Camera((5, 0, 1)), flatness=0.1)
         works = [lambda: refiner.refine_uniform(5),
+                 lambda: stream.run(positions, lambda patch: None),
+                 lambda: view.make_forest(surfaces, positions),
+                 lambda: copy.copy(refiner),
                  lambda: osh.StencilTable(refiner, max_level=4),
                  lambda: osh.CpuEvaluator.eval_stencils(table, positions, values[0]),
                  lambda: refiner.get_level(5).get_face_kinds()]

@@ -242,4 +242,18 @@ Shape MakeSphereHull(int numPoints, int numSteps) {
     return makeHull("sphere hull", points);
 }
 
+Shape MakeSphereOfQuads(Shape const &shape) {
+    PolygonMesh const mesh = RefineSurface(shape, OpenSubdiv::Sdc::SCHEME_CATMARK, 1).back().mesh;
+    Shape result;
+    result.name = shape.name + " in quads";
+    result.faceVertices = mesh.faceVertices;
+    for (int face = 0; face < mesh.GetNumFaces(); ++face) {
+        result.faceSizes.push_back(mesh.GetFaceSize(face));
+    }
+    for (Vector3d const &position : mesh.positions) {
+        addVertex(position.normalized(), result);
+    }
+    return result;
+}
+
 } // namespace OpenSubdivHex::Regression

@@ -72,6 +72,9 @@ std::vector<Shape> MakeTrianglePlatonics();
 /// \param numSteps  of relaxation; with few, the points are less even and valences spread
 Shape MakeSphereHull(int numPoints, int numSteps);
 
+/// Three quads of each triangle of \p shape, or four of each quad, with their vertices on the unit sphere.
+Shape MakeSphereOfQuads(Shape const &shape);
+
 } // namespace OpenSubdivHex::Regression
 
 #endif

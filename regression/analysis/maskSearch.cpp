@@ -240,14 +240,9 @@ public:
     void LookAtRings() {
         constexpr int kNumRings = 2;
         _chosen.resize(kNumRings);
-        for (int vertex = 0; vertex < _mesh.GetNumVertices(); ++vertex) {
-            double const distance = _mesh.positions[vertex].head<2>().norm();
-            for (int ring = 0; ring < kNumRings; ++ring) {
-                if (distance < std::ldexp(1, -ring) && distance >= std::ldexp(0.5, -ring)) {
-                    _chosen[ring].vertices.push_back(vertex);
-                    _chosen[ring].groups.push_back(0);
-                }
-            }
+        for (int ring = 0; ring < kNumRings; ++ring) {
+            _chosen[ring].vertices = FindRing(_mesh, ring);
+            _chosen[ring].groups.assign(_chosen[ring].vertices.size(), 0);
         }
     }
 
@@ -289,7 +284,8 @@ private:
             auto const getWeights = [&](int face, int i) -> double const * {
                 int const corner = parent.faceFirstCorner[std::size_t(face)] + i;
                 int const size = parent.GetFaceSize(face);
-                auto const irregular = parent.GetIrregularCorners(corner, corner + 1);
+                auto const irregular =
+                    FarExt::internal::FindCornerTags(parent.irregularCorners, corner, corner + 1);
                 CornerWeights mask = {nullptr, false};
                 if (ofLevel && size == kQuad && !parent.IsHalfFace(face)) {
                     mask.weights = ofLevel->inQuad;

@@ -62,7 +62,7 @@ std::vector<std::vector<Point>> makeSector(Tiling tiling, int numRings) {
 
 } // namespace
 
-Shape MakeVertexDisk(Tiling tiling, int valence, int numRings) {
+Shape MakeVertexDisk(Tiling tiling, int valence, int numRings, DiskPart part) {
     constexpr double kTolerance = 1e-6;
     std::vector<Point> points{0};
     auto const findPoint = [&points](Point const &point) {
@@ -78,6 +78,7 @@ Shape MakeVertexDisk(Tiling tiling, int valence, int numRings) {
     Shape shape;
     shape.name = "vertex disk";
     int const numRegular = countRegularSectors(tiling);
+    double const parts = part == DiskPart::Half ? 2.0 * valence : valence;
     for (int sector = 0; sector < valence; ++sector) {
         for (std::vector<Point> const &face : makeSector(tiling, numRings)) {
             shape.faceSizes.push_back(int(face.size()));
@@ -85,7 +86,7 @@ Shape MakeVertexDisk(Tiling tiling, int valence, int numRings) {
                 double const angle = std::arg(corner) * numRegular + 2 * kPi * sector;
                 double const distance = std::abs(corner);
                 shape.faceVertices.push_back(
-                    distance < kTolerance ? 0 : findPoint(std::polar(distance, angle / valence)));
+                    distance < kTolerance ? 0 : findPoint(std::polar(distance, angle / parts)));
             }
         }
     }
@@ -93,6 +94,20 @@ Shape MakeVertexDisk(Tiling tiling, int valence, int numRings) {
         shape.positions.insert(shape.positions.end(), {point.real(), point.imag(), 0});
     }
     return shape;
+}
+
+std::vector<int> FindRing(PolygonMesh const &mesh, int ring) {
+    std::vector<int> vertices;
+    for (int vertex = 0; vertex < mesh.GetNumVertices(); ++vertex) {
+        double const distance = mesh.positions[vertex].head<2>().norm();
+        if (distance < std::ldexp(1.0, -ring) && distance >= std::ldexp(0.5, -ring)) {
+            vertices.push_back(vertex);
+        }
+    }
+    if (vertices.empty()) {
+        throw std::runtime_error("a ring without vertices");
+    }
+    return vertices;
 }
 
 std::vector<double> MeasureRipple(Tiling tiling, int valence, AnyScheme const &scheme,
@@ -114,19 +129,15 @@ std::vector<double> MeasureRipple(Tiling tiling, int valence, AnyScheme const &s
         quadratic == Quadratic::Elliptic ? Curvature::Mean : Curvature::Gaussian;
     std::vector<double> ripple;
     for (int ring = 0; ring < numRings; ++ring) {
-        std::vector<int> vertices;
-        for (int vertex = 0; vertex < mesh.GetNumVertices(); ++vertex) {
-            auto const position = mesh.positions[vertex].head<2>();
-            double const distance = position.norm();
-            double const angle = std::atan2(position.y(), position.x());
-            if (distance < std::ldexp(1.0, -ring) && distance >= std::ldexp(0.5, -ring) &&
-                angle >= firstAngle && angle < lastAngle) {
-                vertices.push_back(vertex);
-            }
-        }
-        if (vertices.empty()) {
-            throw std::runtime_error("a ring without vertices");
-        }
+        std::vector<int> vertices = FindRing(mesh, ring);
+        vertices.erase(std::remove_if(vertices.begin(), vertices.end(),
+                                      [&](int vertex) {
+                                          auto const position = mesh.positions[vertex].head<2>();
+                                          double const angle =
+                                              std::atan2(position.y(), position.x());
+                                          return angle < firstAngle || angle >= lastAngle;
+                                      }),
+                       vertices.end());
         ripple.push_back(
             MeasureUnevenness(mesh, vertices, std::vector<int>(vertices.size(), 0), curvature));
     }

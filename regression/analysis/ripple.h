@@ -10,6 +10,8 @@
 
 namespace OpenSubdivHex::Regression {
 
+enum class DiskPart { Whole, Half };
+
 /// \brief A flat, open mesh of \p valence equal sectors around its vertex 0, at the origin: a regular
 /// tiling with its edges of length 1, of which a vertex has been given other faces.
 ///
@@ -17,7 +19,14 @@ namespace OpenSubdivHex::Regression {
 /// their distance from the origin, and their angle is scaled so that the sectors go around once.
 ///
 /// \param numRings  of faces around the vertex
-Shape MakeVertexDisk(Tiling tiling, int valence, int numRings);
+/// \param part      Half: the sectors go around half a turn, counter-clockwise from the x axis
+Shape MakeVertexDisk(Tiling tiling, int valence, int numRings, DiskPart part = DiskPart::Whole);
+
+/// The vertices of \p mesh in a ring around the z axis: between the distances 2^-ring and 2^-(ring + 1), of which the
+/// larger counts as outside.
+///
+/// \throws std::runtime_error  where there are none
+std::vector<int> FindRing(PolygonMesh const &mesh, int ring);
 
 /// What the control points of a mesh are lifted to: x^2 + y^2, or x^2 - y^2.
 enum class Quadratic { Elliptic, Hyperbolic };

@@ -91,7 +91,7 @@ std::vector<Found> findAll(BfrExt::SurfaceFactory const &factory, Shape const &s
 } // namespace
 
 TEST(KeptFacesTest, AreThoseThatWereAddedTwice) {
-    Kept kept(nullptr, 5, 2, kEnough);
+    Kept kept(5, 2, kEnough);
     EXPECT_FALSE(kept.Find(1, 3));
     Indices const points = makePoints(10);
     EXPECT_FALSE(add(kept, 1, 3, 7, 3, points));
@@ -113,7 +113,7 @@ TEST(KeptFacesTest, AreThoseThatWereAddedTwice) {
 TEST(KeptFacesTest, TakeNoMoreMemoryThanTheyMay) {
     constexpr int kNumFaces = 10000;
     for (std::size_t const memory : {std::size_t(0), std::size_t(1000), kEnough / 4}) {
-        Kept kept(nullptr, kNumFaces, 1, memory);
+        Kept kept(kNumFaces, 1, memory);
         std::size_t numKept = 0;
         for (int face = 0; face < kNumFaces; ++face) {
             EXPECT_FALSE(add(kept, 0, face, face, 3, makePoints(face)));
@@ -133,7 +133,7 @@ TEST(KeptFacesTest, TakeNoMoreMemoryThanTheyMay) {
 TEST(KeptFacesTest, OfOneKindAreKeptWhereAnotherHasNoMemory) {
     constexpr int kNumFaces = 20000;
     constexpr std::size_t kSlots = kNumFaces * sizeof(void *);
-    Kept kept(nullptr, kNumFaces, 2, 2 * kSlots - 1);
+    Kept kept(kNumFaces, 2, 2 * kSlots - 1);
     Indices const points = makePoints(7);
     add(kept, 0, 3, 1, 3, points);
     for (int round = 0; round < 3; ++round) {
@@ -145,7 +145,7 @@ TEST(KeptFacesTest, OfOneKindAreKeptWhereAnotherHasNoMemory) {
 
 TEST(KeptFacesTest, LieWhereTheirTypesMay) {
     using KeptPointers = BfrExt::internal::KeptFaces<int const *>;
-    KeptPointers kept(nullptr, 100, 1, kEnough);
+    KeptPointers kept(100, 1, kEnough);
     int const type = 1;
     // The largest takes more than a block.
     for (int face = 0; face < 100; ++face) {
@@ -163,7 +163,7 @@ TEST(KeptFacesTest, LieWhereTheirTypesMay) {
 TEST(KeptFacesTest, AreTheSameForAllThreads) {
     constexpr int kNumFaces = 20000;
     constexpr int kNumThreads = 2;
-    Kept kept(nullptr, kNumFaces, 1, 8 * kEnough);
+    Kept kept(kNumFaces, 1, 8 * kEnough);
     std::vector<Kept::Face const *> added[kNumThreads];
     for (int face = 0; face < kNumFaces; ++face) {
         ASSERT_FALSE(add(kept, 0, face, face, 3, makePoints(face)));

@@ -130,10 +130,12 @@ TEST(PatchStreamTest, PatchesDoNotDependOnThreadsMemoryAndShares) {
         for (std::size_t const memory :
              {std::size_t(0), std::size_t(1) << 16, std::size_t(1) << 28}) {
             for (int const numShares : {1, 4}) {
-                auto const factory = SurfaceFactory::Create(*refiner);
+                // Of types that take some megabytes.
+                BfrExt::SurfaceFactoryCache cache(memory == 0 ? 1 << 18 : 1 << 30);
+                auto const factory = SurfaceFactory::Create(
+                    *refiner, SurfaceFactory::Options().SetExternalCache(&cache));
                 PatchStream<float>::Options options;
                 options.SetMaxMemory(memory);
-                options.SetMaxTypes(memory == 0 ? 40 : 0); // of some hundreds
                 PatchStream<float> const stream(*factory, levels.Get(), options);
                 Collection<float> collection;
                 int const numFaces = factory->GetNumFaces();

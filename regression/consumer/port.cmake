@@ -1,19 +1,14 @@
 # SPDX-License-Identifier: Apache-2.0
 #
-# cmake -D sourceDir=... -D buildDir=... -D workDir=... -D version=... -D config=... -D generator=...
+# cmake -D sourceDir=... -D buildDir=... -D workDir=... -D config=... -D generator=...
 #       -D compiler=... -D "options=..." -P port.cmake
 #
 # Reads the recipe of the vcpkg port with stand-ins for vcpkg's functions: the project is configured
 # with the recipe's options, of which it has to know all, but what is installed is buildDir, which is
-# built already.  Checks that the recipe has the project's version, and that all is where it looks.
+# built already.  Checks that all is where the recipe looks.
 cmake_minimum_required(VERSION 3.24)
 
 file(READ ${sourceDir}/ports/opensubdivhex/vcpkg.json manifest)
-string(JSON portVersion GET "${manifest}" version)
-if(NOT portVersion STREQUAL version)
-  message(FATAL_ERROR
-    "ports/opensubdivhex/vcpkg.json has version ${portVersion}, CMakeLists.txt ${version}")
-endif()
 
 file(REMOVE_RECURSE ${workDir})
 set(CURRENT_PACKAGES_DIR ${workDir}/package)

@@ -68,6 +68,15 @@ if(OPENSUBDIVHEX_PKG_CONFIG AND UNIX)
 endif()
 set_tests_properties(consumer.install PROPERTIES FIXTURES_SETUP installed)
 set_tests_properties(consumer.build PROPERTIES FIXTURES_REQUIRED installed)
+# A program of version 1.0, by the table of new names.
+add_test(NAME consumer.migration
+  COMMAND ${CMAKE_COMMAND}
+    -D sourceDir=${PROJECT_SOURCE_DIR}
+    -D workDir=${consumerDir}/migration
+    -D config=$<CONFIG>
+    "-D options=-G${CMAKE_GENERATOR};-DCMAKE_PREFIX_PATH=${consumerDir}/prefix\;${CMAKE_PREFIX_PATH};-DCMAKE_CXX_COMPILER=${CMAKE_CXX_COMPILER};-DCMAKE_CXX_FLAGS=${CMAKE_CXX_FLAGS};-DCMAKE_TOOLCHAIN_FILE=${CMAKE_TOOLCHAIN_FILE};-DOpenSubdiv_ROOT=${OpenSubdiv_ROOT};-DOpenSubdiv_DIR=${OpenSubdiv_DIR}"
+    -P ${PROJECT_SOURCE_DIR}/regression/consumer/migration/migration.cmake)
+set_tests_properties(consumer.migration PROPERTIES FIXTURES_REQUIRED installed)
 add_test(NAME consumer.guide
   COMMAND ${CMAKE_COMMAND} -D folder=${consumerDir}/prefix/${CMAKE_INSTALL_DOCDIR}
     -P ${PROJECT_SOURCE_DIR}/regression/guide/links.cmake)
@@ -134,6 +143,13 @@ if(programs)
       -P ${PROJECT_SOURCE_DIR}/regression/consumer/devices.cmake)
 endif()
 
+add_test(NAME consumer.examples
+  COMMAND ${CMAKE_COMMAND} -D sourceDir=${PROJECT_SOURCE_DIR} -D opensubdivDir=${OpenSubdiv_INCLUDE_DIR}
+    -P ${PROJECT_SOURCE_DIR}/regression/consumer/examples.cmake)
+add_test(NAME consumer.versions
+  COMMAND ${CMAKE_COMMAND} -D sourceDir=${PROJECT_SOURCE_DIR} -D version=${PROJECT_VERSION}
+    -P ${PROJECT_SOURCE_DIR}/regression/consumer/versions.cmake)
+
 # The recipe of the vcpkg port.
 if(OPENSUBDIVHEX_TOOLS AND CMAKE_INSTALL_LIBDIR STREQUAL "lib")
   add_test(NAME consumer.port
@@ -141,7 +157,6 @@ if(OPENSUBDIVHEX_TOOLS AND CMAKE_INSTALL_LIBDIR STREQUAL "lib")
       -D sourceDir=${PROJECT_SOURCE_DIR}
       -D buildDir=${PROJECT_BINARY_DIR}
       -D workDir=${consumerDir}/port
-      -D version=${PROJECT_VERSION}
       -D config=$<CONFIG>
       -D generator=${CMAKE_GENERATOR}
       -D compiler=${CMAKE_CXX_COMPILER}

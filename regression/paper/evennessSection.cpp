@@ -6,6 +6,7 @@
 #include "schemes.h"
 #include "sections.h"
 
+#include "regression/analysis/besideLines.h"
 #include "regression/analysis/evenness.h"
 #include "regression/analysis/ripple.h"
 #include "regression/analysis/spectrum.h"
@@ -90,6 +91,58 @@ void addValences(Page *page, int level) {
     page->AddTable(table);
 }
 
+std::string formatNumbers(std::vector<double> const &values) {
+    std::string result;
+    for (double value : values) {
+        result += (result.empty() ? "" : "; ") + FormatNumber(value, 2);
+    }
+    return result;
+}
+
+/// What borders do: along tubes of quads, and around border vertices of triangles.
+void addLines(Page *page) {
+    constexpr int kNumAround = 12;
+    constexpr int kNumRows = 8;
+    constexpr int kNumQuarters = 8;
+    Table tubes{{"height of a row, in widths of a quad", "Smooth", "Catmull-Clark"},
+                {},
+                "Open tubes of 12 x 8 quads, level " + std::to_string(kMeasuredLevel) +
+                    ": mean curvature over that of a cylinder, by quarter rows from the border on. "
+                    " 1 is exact."};
+    for (double rowHeight : {1.0, 0.5}) {
+        tubes.rows.push_back({FormatNumber(rowHeight, 1)});
+        for (AnyScheme const &scheme :
+             {AnyScheme(MakeHexagonal(FaceMask::Smooth)), AnyScheme(Sdc::SCHEME_CATMARK)}) {
+            Sdc::Options options;
+            options.SetVtxBoundaryInterpolation(Sdc::Options::VTX_BOUNDARY_EDGE_ONLY);
+            auto const levels = RefineSurface(MakeTube(kNumAround, kNumRows, rowHeight), scheme,
+                                              kMeasuredLevel, MeshCenter(), options);
+            tubes.rows.back().push_back(formatNumbers(MeasureTube(
+                levels.back().mesh, GetTubeRowHeight(kNumAround, rowHeight), kNumQuarters)));
+        }
+    }
+    page->AddTable(tubes);
+
+    constexpr int kNumRings = 3;
+    Table disks{{"triangles at the border vertex", "Smooth, truncate first", "Loop"},
+                {},
+                "Half disks of triangles around a border vertex, with control points on x&sup2; "
+                "and the border along "
+                "x, level " +
+                    std::to_string(kMeasuredLevel) +
+                    ": deviation of mean curvature from its mean over a ring, as a "
+                    "part of that mean, in three rings, each half as far out as the one before."};
+    for (int numFaces : {2, 3, 4, 5, 6, 8}) {
+        disks.rows.push_back({std::to_string(numFaces)});
+        for (AnyScheme const &scheme :
+             {AnyScheme(MakeTruncateFirst(FaceMask::Smooth)), AnyScheme(Sdc::SCHEME_LOOP)}) {
+            disks.rows.back().push_back(formatNumbers(
+                MeasureHalfDisk(Tiling::Triangles, numFaces, scheme, kNumRings, kMeasuredLevel)));
+        }
+    }
+    page->AddTable(disks);
+}
+
 } // namespace
 
 void AddEvennessSection(Page *page, Settings const &settings) {
@@ -125,14 +178,26 @@ void AddEvennessSection(Page *page, Settings const &settings) {
            [](PolygonMesh const &mesh) { return MeasureTorusUnevenness(mesh, 20); });
     addRow("torus of 9 x 6 quads", MakeTorus(9, 6, TorusFaces::Quads), false,
            [](PolygonMesh const &mesh) { return MeasureTorusUnevenness(mesh, 9); });
+    addRow("torus of 30 x 6 quads, long ones", MakeTorus(30, 6, TorusFaces::Quads), false,
+           [](PolygonMesh const &mesh) { return MeasureTorusUnevenness(mesh, 30); });
+    addRow("torus of 7 x 12 quads, long ones", MakeTorus(7, 12, TorusFaces::Quads), false,
+           [](PolygonMesh const &mesh) { return MeasureTorusUnevenness(mesh, 7); });
     addRow("torus of triangles", MakeTorus(14, 8, TorusFaces::Triangles), true,
            [](PolygonMesh const &mesh) { return MeasureTorusUnevenness(mesh, 14); });
     for (Shape const &shape : MakeTrianglePlatonics()) {
         addRow(shape.name, shape, true, MeasureSphereUnevenness);
     }
-    addRow("hull of 60 points on a sphere", MakeSphereHull(60, 200), true, MeasureSphereUnevenness);
+    Shape const hull = MakeSphereHull(60, 200);
+    addRow("hull of 60 points on a sphere", hull, true, MeasureSphereUnevenness);
+    for (Shape const &shape : MakeTrianglePlatonics()) {
+        addRow(shape.name + " as a sphere of quads", MakeSphereOfQuads(shape), false,
+               MeasureSphereUnevenness);
+    }
+    addRow("the same hull as a sphere of quads", MakeSphereOfQuads(hull), false,
+           MeasureSphereUnevenness);
     page->AddTable(table);
     addValences(page, level);
+    addLines(page);
 
     PictureOptions options;
     options.view = {20, 40, 1.4f};

@@ -32,7 +32,7 @@ struct Arguments {
     int level = 5;
     FarExt::FaceMask mask = FarExt::FaceMask::Smooth;
     double megabytes = 4;
-    int maxTypes = 0;
+    double cacheMegabytes = 1000;
     std::vector<int> share; // of a process: which one, of how many
 };
 
@@ -154,15 +154,15 @@ void run(Arguments const &arguments, std::string const &program) {
     }
     // Each count begins with an empty cache.
     auto const count = [&](int beginFace, int endFace) {
-        auto const factory = BfrExt::SurfaceFactory::Create(*refiner, {}, &status);
+        BfrExt::SurfaceFactoryCache cache(std::size_t(arguments.cacheMegabytes * 1e6));
+        auto const factory = BfrExt::SurfaceFactory::Create(
+            *refiner, BfrExt::SurfaceFactory::Options().SetExternalCache(&cache), &status);
         if (!factory) {
             throw Tools::FileError(arguments.input, status.GetErrorMessage());
         }
-        BfrExt::PatchStream<float> const stream(
-            *factory, BfrExt::PatchLevels(arguments.level),
-            BfrExt::PatchStream<float>::Options()
-                .SetMaxMemory(std::size_t(arguments.megabytes * 1e6))
-                .SetMaxTypes(std::size_t(arguments.maxTypes)));
+        BfrExt::PatchStream<float> const stream(*factory, BfrExt::PatchLevels(arguments.level),
+                                                BfrExt::PatchStream<float>::Options().SetMaxMemory(
+                                                    std::size_t(arguments.megabytes * 1e6)));
         return countStream(stream, mesh.positions, beginFace, endFace);
     };
     int const numFaces = refiner->GetLevel(0).GetNumFaces();
@@ -195,8 +195,8 @@ void run(Arguments const &arguments, std::string const &program) {
     Count const result =
         countByProcesses(quote(program) + " " + quote(arguments.input) + " --level " +
                              std::to_string(arguments.level) + " --mask " + mask + " --memory " +
-                             std::to_string(arguments.megabytes) + " --max-types " +
-                             std::to_string(arguments.maxTypes),
+                             std::to_string(arguments.megabytes) + " --cache " +
+                             std::to_string(arguments.cacheMegabytes),
                          2);
     printRow("2 processes", result, getSeconds(start), std::nan(""));
     if (!areEqual || !(result == first)) {
@@ -230,9 +230,9 @@ int main(int argc, char **argv) {
     app.add_option("--memory", arguments.megabytes, "Megabytes that tessellations may take")
         ->check(CLI::Range(0.0, 1e6))
         ->capture_default_str();
-    app.add_option("--max-types", arguments.maxTypes,
-                   "Types of faces and cells that are kept at a time; 0: all")
-        ->check(CLI::NonNegativeNumber)
+    app.add_option("--cache", arguments.cacheMegabytes,
+                   "Megabytes that types of faces and cells may take")
+        ->check(CLI::Range(0.0, 1e6))
         ->capture_default_str();
     app.add_option("--share", arguments.share,
                    "Print counts and hash of one share of the faces alone")

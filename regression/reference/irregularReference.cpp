@@ -6,7 +6,12 @@
 #include <algorithm>
 #include <cmath>
 #include <complex>
+#include <fstream>
 #include <map>
+#include <sstream>
+#include <stdexcept>
+#include <string>
+#include <utility>
 
 namespace OpenSubdivHex::Regression {
 
@@ -219,14 +224,34 @@ std::optional<Point> NewPointBesideQuad(int numSteps, std::vector<Point> const &
 namespace {
 
 struct PathRow {
-    int kind;
-    std::string path;
-    int ofVertex;
-    std::vector<double> parts; // none of quads
+    double ofVertex;
+    std::vector<double> weights; // none of quads
 };
-std::vector<PathRow> const kPathRows = {
-#include "far_ext/rules/quadRows.inl"
-};
+/// By the kind of a quad's vertex and the name of a path's row.
+using PathRows = std::map<std::pair<char, std::string>, PathRow>;
+
+PathRows readPathRows() {
+    constexpr double kParts = 4096;
+    std::ifstream file(REFERENCE_QUAD_ROWS);
+    PathRows rows;
+    for (std::string line; std::getline(file, line);) {
+        std::istringstream words(line);
+        char kind = 0;
+        std::string path;
+        double part = 0;
+        if (line[0] != '#' && words >> kind >> path >> part) {
+            PathRow &row = rows[{kind, path}];
+            row.ofVertex = part / kParts;
+            while (words >> part) {
+                row.weights.push_back(part / kParts);
+            }
+        }
+    }
+    if (rows.empty()) {
+        throw std::runtime_error("There are no rows in " REFERENCE_QUAD_ROWS);
+    }
+    return rows;
+}
 
 bool isAll(char digit, std::string const &digits) {
     return std::all_of(digits.begin(), digits.end(), [digit](char d) { return d == digit; });
@@ -251,10 +276,21 @@ std::string rowOfPath(QuadPath const &quadPath) {
 
 } // namespace
 
+QuadPath Shorten(QuadPath const &path) {
+    std::string const row = rowOfPath(path);
+    if (path.steps.size() <= 4) {
+        return path;
+    }
+    return row.empty() ? QuadPath()
+                       : QuadPath{path.steps.substr(0, 1) + row[0] + row[0] + row.substr(2),
+                                  path.sharpness};
+}
+
 namespace {
 
 /// Of a corner; null where its paths have none.
 PathRow const *findRow(QuadPath const &out, QuadPath const &in) {
+    static PathRows const rows = readPathRows();
     std::string const ofOut = rowOfPath(out);
     std::string const ofIn = rowOfPath(in);
     if (ofOut.empty() || ofIn.empty()) {
@@ -265,7 +301,7 @@ PathRow const *findRow(QuadPath const &out, QuadPath const &in) {
     if (isStar && ofOut[0] != ofIn[0]) {
         return nullptr;
     }
-    int kind = 4;
+    char kind = '4';
     char const kindOfOut = out.steps[0];
     if (!isStar && kindOfOut == in.steps[0]) {
         // At a vertex of another kind, and beside it.
@@ -273,13 +309,11 @@ PathRow const *findRow(QuadPath const &out, QuadPath const &in) {
         if (kindOfOut == 'o' && isAll('3', before) && (row.back() == '3' || row.back() == '1')) {
             return nullptr;
         }
-        kind = kindOfOut == 'o' ? 4 : kindOfOut - '0';
+        kind = kindOfOut == 'o' ? '4' : kindOfOut;
     }
-    for (int const wanted : {kind, 4}) {
-        for (PathRow const &entry : kPathRows) {
-            if (entry.kind == wanted && entry.path == row) {
-                return &entry;
-            }
+    for (char const wanted : {kind, '4'}) {
+        if (auto const found = rows.find({wanted, row}); found != rows.end()) {
+            return &found->second;
         }
     }
     return nullptr;
@@ -290,19 +324,20 @@ PathRow const *findRow(QuadPath const &out, QuadPath const &in) {
 std::optional<Point> NewPointByPath(std::vector<Point> const &face, int i, QuadPath const &out,
                                     QuadPath const &in) {
     PathRow const *const row = findRow(out, in);
-    if (!row || row->parts.empty()) {
+    if (!row || row->weights.empty()) {
         return {};
     }
+    bool const isBackwards = rowOfPath(in) < rowOfPath(out);
     Point sum = Point::Zero(face[0].size());
     for (int j = 0; j < 6; ++j) {
-        sum += row->parts[j] / 4096 * face[(i + (rowOfPath(in) < rowOfPath(out) ? 6 - j : j)) % 6];
+        sum += row->weights[j] * face[(i + (isBackwards ? 6 - j : j)) % 6];
     }
     return sum;
 }
 
 std::optional<double> WeightByPath(QuadPath const &out, QuadPath const &in) {
     PathRow const *const row = findRow(out, in);
-    return row ? std::optional<double>(row->ofVertex / 4096.0) : std::nullopt;
+    return row ? std::optional<double>(row->ofVertex) : std::nullopt;
 }
 
 Point NewPointOfQuad(int numSteps, std::vector<Point> const &face, int i) {

@@ -74,6 +74,9 @@ struct QuadPath {
     }
 };
 
+/// A path of at most four steps that has the same rows, now and after any more steps; empty where it has none any more.
+QuadPath Shorten(QuadPath const &path);
+
 /// The point beside corner \p i of a hexagon by the paths of its edges there; nothing where they have no rule.
 std::optional<Eigen::RowVectorXd> NewPointByPath(std::vector<Eigen::RowVectorXd> const &face, int i,
                                                  QuadPath const &out, QuadPath const &in);

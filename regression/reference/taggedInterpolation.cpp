@@ -290,13 +290,15 @@ public:
             }
             auto const pull = pulls.find({origin.face, origin.place});
             double const towards = pull != pulls.end() ? pull->second : 0;
+            Side const corner = {origin.face, origin.place};
             _result.row(Eigen::Index(v)) =
-                cornerPoint({origin.face, origin.place}, towards, _values.row(origin.vertex));
+                mixByPath(corner, cornerPoint(corner, towards, _values.row(origin.vertex)));
         }
         for (std::size_t v = 0; v < _mesh.vertices.size(); ++v) {
             if (_child.vVertices[v] >= 0) {
-                _result.row(_child.vVertices[v]) =
-                    _isVarying ? Point(_values.row(Eigen::Index(v))) : movedVertex(int(v));
+                _result.row(_child.vVertices[v]) = _isVarying
+                                                       ? Point(_values.row(Eigen::Index(v)))
+                                                       : mixByPaths(int(v), movedVertex(int(v)));
             }
         }
         return std::move(_result);
@@ -324,13 +326,9 @@ private:
         if (!face.isHalf) {
             std::vector<Point> const points = pointsOf(face.vertices);
             bool const isQuad = hasIrregularRules() && points.size() == 4;
-            auto const [out, in] = pathsOf(corner);
-            std::optional<Point> const byPath = hasIrregularRules() && points.size() == 6
-                                                    ? NewPointByPath(points, corner.place, out, in)
-                                                    : std::nullopt;
-            Point const smooth =
-                isQuad ? NewPointOfQuad(_mesh.numHexagonalSteps, points, corner.place)
-                       : mixByPath(byPath, out.GetShare(), maskPoint(points, corner.place));
+            Point const smooth = isQuad
+                                     ? NewPointOfQuad(_mesh.numHexagonalSteps, points, corner.place)
+                                     : maskPoint(points, corner.place);
             Point const plain =
                 atOneFace(points, corner, towards * vertex + (1 - towards) * smooth);
             if (!hasIrregularRules() || points.size() != 6) {
@@ -340,38 +338,18 @@ private:
             for (int i = 0; i < 6; ++i) {
                 corners.push_back({corner.face, i});
             }
-            double const rest = byPath ? 1 - out.GetShare() : 1;
-            return plain +
-                   rest * (_irregularities.Apply(points, corners, 0, corner.place, plain) - plain);
+            return _irregularities.Apply(points, corners, 0, corner.place, plain);
         }
         Edge const &line = _mesh.edges[face.edges[0]];
         if (line.sides.size() == 1) {
             return halfPoint(face, corner.place) + fromOneFace(face, corner);
         }
-        // The polygon that the two halves make, mostly a hexagon: V, R, S, W, Q, P.
-        bool const isFirst = line.sides[0].face == corner.face;
-        Face const &other = _mesh.faces[line.sides[isFirst ? 1 : 0].face];
-        std::vector<int> whole{face.vertices[0]};
-        whole.insert(whole.end(), other.vertices.begin() + 2, other.vertices.end());
-        std::vector<int> places{0, int(whole.size())};
-        whole.insert(whole.end(), face.vertices.begin() + 1, face.vertices.end());
-        while (places.size() < face.vertices.size()) {
-            places.push_back(places.back() + 1);
-        }
-        std::vector<Point> const hexagon = pointsOf(whole);
-        std::size_t const place = std::size_t(corner.place);
-        bool const isHexagon = hexagon.size() == 6 && places[1] == 3;
-        std::optional<Point> byPath;
-        double share = 0;
-        if (hasIrregularRules() && hexagon.size() == 6) {
-            auto const [out, in] = pathsOf(corner);
-            byPath = NewPointByPath(hexagon, places[place], out, in);
-            share = out.GetShare();
-        }
-        bool const isQuad = hasIrregularRules() && hexagon.size() == 4;
-        Point const smooth = isQuad
-                                 ? NewPointOfQuad(_mesh.numHexagonalSteps, hexagon, places[place])
-                                 : mixByPath(byPath, share, maskPoint(hexagon, places[place]));
+        auto const [vertices, place] = wholeOf(corner);
+        std::vector<Point> const whole = pointsOf(vertices);
+        bool const isQuad = hasIrregularRules() && whole.size() == 4;
+        bool const isHexagon = whole.size() == 6 && face.vertices.size() == 4;
+        Point const smooth = isQuad ? NewPointOfQuad(_mesh.numHexagonalSteps, whole, place)
+                                    : maskPoint(whole, place);
         double const sharp = _isVarying ? 0 : std::min(1.0, double(line.sharpness));
         Point const plain = sharp * halfPoint(face, corner.place) + towards * vertex +
                             (1 - sharp - towards) * smooth + fromOneFace(face, corner);
@@ -379,15 +357,10 @@ private:
             return plain;
         }
         int const self = corner.face;
-        int const partner = line.sides[isFirst ? 1 : 0].face;
-        Point const irregular = _irregularities.Apply(
-            hexagon, {{partner, 1}, {partner, 2}, {partner, 3}, {self, 1}, {self, 2}, {self, 3}},
-            line.sharpness, places[corner.place], plain);
-        return plain + (byPath ? 1 - share : 1) * (irregular - plain);
-    }
-
-    static Point mixByPath(std::optional<Point> const &byPath, double share, Point const &rest) {
-        return byPath ? Point(share * *byPath + (1 - share) * rest) : rest;
+        int const partner = line.sides[line.sides[0].face == self ? 1 : 0].face;
+        return _irregularities.Apply(
+            whole, {{partner, 1}, {partner, 2}, {partner, 3}, {self, 1}, {self, 2}, {self, 3}},
+            line.sharpness, place, plain);
     }
 
     bool hasIrregularRules() const {
@@ -493,23 +466,60 @@ private:
         return {out, in};
     }
 
-    /// The smooth rule where the paths of all corners tell the weights of their new points.
-    std::optional<Point> vertexByPaths(int v) const {
+    /// A new point, whose rules by all else than paths have made \p other.
+    Point mixByPath(Side corner, Point const &other) const {
+        if (!hasIrregularRules()) {
+            return other;
+        }
+        auto const [hexagon, place] = wholeOf(corner);
+        auto const [out, in] = pathsOf(corner);
+        std::optional<Point> const byPath =
+            hexagon.size() == 6 ? NewPointByPath(pointsOf(hexagon), place, out, in) : std::nullopt;
+        return byPath ? Point(out.GetShare() * *byPath + (1 - out.GetShare()) * other) : other;
+    }
+
+    /// A moved vertex, likewise: where the paths of all corners tell the weights of their new points.
+    Point mixByPaths(int v, Point const &other) const {
+        if (!hasIrregularRules() || _mesh.vertices[v].corners.empty()) {
+            return other;
+        }
         Point const old = _values.row(v);
         Point moved = old;
         std::set<int> around;
+        double share = 0;
         for (Side corner : _mesh.vertices[v].corners) {
             int const point = _child.fVertices[corner.face][corner.place];
             auto const [out, in] = pathsOf(corner);
             std::optional<double> const weight = WeightByPath(out, in);
             if (!weight) {
-                return {};
+                return other;
             }
             if (around.insert(point).second) {
                 moved += *weight * (_result.row(point) - old);
             }
+            share = out.GetShare();
         }
-        return moved;
+        return share * moved + (1 - share) * other;
+    }
+
+    /// The face, or the hexagon whose half it is, V, R, S, W, Q, P; and the corner's place there.
+    std::pair<std::vector<int>, int> wholeOf(Side corner) const {
+        Face const &face = _mesh.faces[corner.face];
+        std::vector<int> const &own = face.vertices;
+        if (!face.isHalf) {
+            return {own, corner.place};
+        }
+        Edge const &line = _mesh.edges[face.edges[0]];
+        if (line.sides.size() == 1) {
+            return {};
+        }
+        bool const isFirst = line.sides[0].face == corner.face;
+        std::vector<int> const &other = _mesh.faces[line.sides[isFirst ? 1 : 0].face].vertices;
+        std::vector<int> whole{own[0]};
+        whole.insert(whole.end(), other.begin() + 2, other.end());
+        int const end = int(whole.size()); // of the line
+        whole.insert(whole.end(), own.begin() + 1, own.end());
+        return {whole, corner.place == 0 ? 0 : end + corner.place - 1};
     }
 
     Point smoothVertex(int v) const {
@@ -521,14 +531,6 @@ private:
         for (int vertex : around) {
             sum += _result.row(vertex);
         }
-        std::optional<Point> const byPath = hasIrregularRules() ? vertexByPaths(v) : std::nullopt;
-        double const share = byPath ? pathsOf(_mesh.vertices[v].corners[0]).first.GetShare() : 0;
-        return share == 0 ? otherSmoothVertex(v, around, sum)
-                          : share * *byPath + (1 - share) * otherSmoothVertex(v, around, sum);
-    }
-
-    /// Where no paths tell it.
-    Point otherSmoothVertex(int v, std::set<int> const &around, Point const &sum) const {
         Point const plain = sum / double(around.size() + 1);
         Irregularities::Vertex const irregular =
             hasIrregularRules() ? _irregularities.FindVertex(v) : Irregularities::Vertex();

@@ -152,6 +152,16 @@ TEST(SharedSurfaces, OfOneCache) {
     });
 }
 
+// Types are forgotten while other threads evaluate them.
+TEST(SharedSurfaces, OfOneSmallCache) {
+    Shape const &shape = GetFeatureShape("dartsQuads");
+    auto const refiner = createRefiner(shape);
+    std::vector<double> const expected = evaluateAll(*createFactory(*refiner), shape);
+    SurfaceFactoryCache cache(1 << 22);
+    auto const factory = createFactory(*refiner, &cache);
+    ExpectOnThreads(expected, [&] { return evaluateAll(*factory, shape); });
+}
+
 TEST(SharedSurfaces, OfOneTessellation) {
     Shape const &shape = GetFeatureShape("dartsQuads");
     auto const refiner = createRefiner(shape);
@@ -198,8 +208,8 @@ TEST(SharedSurfaces, OfOneStream) {
         Stream::Options options;
         options.SetDerivatives(true);
         options.SetMaxMemory(isKept ? 1 << 22 : 1 << 14);
-        options.SetMaxTypes(isKept ? 0 : 20);
-        auto const factory = createFactory(*refiner);
+        SurfaceFactoryCache cache(isKept ? 1 << 28 : 1 << 16);
+        auto const factory = createFactory(*refiner, &cache);
         Stream const stream(*factory, levels, options);
         if (expected.empty()) {
             expected = run(Stream(*createFactory(*refiner), levels, options), shape);

@@ -161,11 +161,13 @@ void run(Arguments const &arguments) {
     std::vector<int> const shown = FindShownVertices(mesh);
     ScaleToUnitSize(shown, &mesh.positions);
     std::vector<float> const points = GatherPositions(shown, mesh.positions);
-    Sdc::Options options;
-    options.SetVtxBoundaryInterpolation(Sdc::Options::VTX_BOUNDARY_EDGE_ONLY);
+    Sdc::Options sdcOptions;
+    sdcOptions.SetVtxBoundaryInterpolation(Sdc::Options::VTX_BOUNDARY_EDGE_AND_CORNER);
+    FarExt::TopologyRefinerFactory::Options options;
+    options.hexSchemeOptions.faceMask = FarExt::FaceMask::Smooth;
     FarExt::CallStatus status;
-    auto const refiner =
-        FarExt::TopologyRefinerFactory::Create(DescribeTopology(mesh), options, &status);
+    auto const refiner = FarExt::TopologyRefinerFactory::Create(DescribeTopology(mesh), sdcOptions,
+                                                                options, &status);
     auto const factory = refiner ? BfrExt::SurfaceFactory::Create(*refiner, &status) : nullptr;
     if (!factory) {
         throw FileError(arguments.input, status.GetErrorMessage());

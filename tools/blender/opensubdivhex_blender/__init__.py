@@ -8,7 +8,7 @@ bl_info = {
     "name": "Hexagonal Subdivision",
     "description": "Objects that follow a mesh, subdivided into hexagons by OpenSubdivHex",
     "author": "OpenSubdivHex",
-    "version": (1, 0, 0),
+    "version": (2, 0, 0),
     "blender": (3, 4, 0),
     "location": "Object > Hexagonal Subdivision; Properties > Object Data",
     "category": "Object",

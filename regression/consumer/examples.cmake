@@ -1,0 +1,41 @@
+# SPDX-License-Identifier: Apache-2.0
+#
+# cmake -D sourceDir=... -D opensubdivDir=... -P examples.cmake
+#
+# Checks that the examples in comments of public headers use names that there are: members and types that these headers or
+# OpenSubdiv's, below opensubdivDir, declare.
+cmake_minimum_required(VERSION 3.24)
+file(GLOB headers ${sourceDir}/*_ext/*.h)
+file(GLOB theirs ${opensubdivDir}/opensubdiv/*/*.h)
+set(words "")
+foreach(header IN LISTS headers theirs)
+  file(READ ${header} code)
+  string(REGEX REPLACE "//[^\n]*" "" code "${code}")
+  string(REGEX MATCHALL "[A-Za-z_][A-Za-z0-9_]*" found "${code}")
+  list(APPEND words ${found})
+endforeach()
+list(REMOVE_DUPLICATES words)
+
+set(numExamples 0)
+foreach(header IN LISTS headers)
+  file(READ ${header} text)
+  string(FIND "${text}" "\\code" begin)
+  while(NOT begin EQUAL -1)
+    string(SUBSTRING "${text}" ${begin} -1 text)
+    string(FIND "${text}" "\\endcode" end)
+    string(SUBSTRING "${text}" 0 ${end} example)
+    string(SUBSTRING "${text}" ${end} -1 text)
+    string(REGEX MATCHALL "(\\.|->|::)[A-Z][A-Za-z0-9_]*" names "${example}")
+    foreach(name IN LISTS names)
+      string(REGEX REPLACE "^[^A-Z]+" "" name ${name})
+      if(NOT name IN_LIST words)
+        message(SEND_ERROR "an example in ${header} uses ${name}, which no header declares")
+      endif()
+    endforeach()
+    math(EXPR numExamples "${numExamples} + 1")
+    string(FIND "${text}" "\\code" begin)
+  endwhile()
+endforeach()
+if(numExamples LESS 10)
+  message(SEND_ERROR "only ${numExamples} examples were found")
+endif()

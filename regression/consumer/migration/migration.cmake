@@ -1,0 +1,86 @@
+# SPDX-License-Identifier: Apache-2.0
+#
+# cmake -D sourceDir=... -D workDir=... -D config=... -D "options=OPTION;..." -P migration.cmake
+#
+# Takes a program of version 1.0 through the table "Changed names": each name of 1.0 is still there or in the table; the
+# program compiles and runs; and behaviours that differ are those that the guide lists.
+cmake_minimum_required(VERSION 3.24)
+include(${CMAKE_CURRENT_LIST_DIR}/changedNames.cmake)
+set(here ${CMAKE_CURRENT_LIST_DIR})
+read_changed_names(${sourceDir}/CHANGELOG.md oldNames newNames)
+
+# The names that there are.
+file(GLOB headers RELATIVE ${sourceDir} ${sourceDir}/*_ext/*.h)
+set(words "")
+foreach(file IN ITEMS ${headers} python/opensubdivhex/__init__.pyi)
+  file(READ ${sourceDir}/${file} code)
+  string(REGEX REPLACE "//[^\n]*|#[^i][^\n]*" "" code "${code}")
+  string(REGEX MATCHALL "[A-Za-z_][A-Za-z0-9_]*" found "${code}")
+  list(APPEND words ${found})
+endforeach()
+list(REMOVE_DUPLICATES words)
+set(present ${headers} ${words})
+# Those of OpenSubdiv's Parameterization, which ours is.
+list(APPEND present GetCenterCoord GetEdgeCoord GetVertexCoord HasSubFaces)
+
+# The last part of a name tells it: its class has a line of its own.
+set(changed "")
+foreach(name IN LISTS oldNames)
+  if(NOT name MATCHES "/")
+    string(REGEX REPLACE "^.*(::|\\.)" "" name ${name})
+  endif()
+  list(APPEND changed ${name})
+endforeach()
+file(STRINGS ${here}/names.txt names REGEX "^[^#]")
+foreach(name IN LISTS names)
+  set(last ${name})
+  if(NOT name MATCHES "/")
+    string(REGEX REPLACE "^.*(::|\\.)" "" last ${name})
+  endif()
+  if(last IN_LIST changed OR last IN_LIST present)
+    continue()
+  endif()
+  message(SEND_ERROR "version 1.0 has ${name}: neither is it there, nor in the table of changed names")
+endforeach()
+
+file(READ ${here}/program.txt program)
+string(REPLACE ";" "@semicolon@" program "${program}")
+apply_changed_names(program oldNames newNames)
+string(REPLACE "@semicolon@" ";" program "${program}")
+file(REMOVE_RECURSE ${workDir})
+file(WRITE ${workDir}/program.cpp "${program}")
+foreach(command IN ITEMS
+    "-S;${here};-B;${workDir}/build;-Dsource=${workDir}/program.cpp;-DCMAKE_BUILD_TYPE=${config};${options}"
+    "--build;${workDir}/build;--config;${config}")
+  execute_process(COMMAND ${CMAKE_COMMAND} ${command} COMMAND_ERROR_IS_FATAL ANY)
+endforeach()
+find_program(migrated program PATHS ${workDir}/build ${workDir}/build/${config} NO_DEFAULT_PATH REQUIRED NO_CACHE)
+execute_process(COMMAND ${migrated} OUTPUT_VARIABLE output RESULT_VARIABLE result)
+message("${output}")
+if(NOT result EQUAL 0)
+  message(SEND_ERROR "the program of version 1.0 exits with ${result}")
+endif()
+
+# Behaviours that differ: those that the guide lists.
+file(READ ${sourceDir}/docs/guide/migration.md page)
+string(REGEX MATCHALL "\n- \\*\\*[^*\n]+\\*\\*:" items "${page}")
+list(TRANSFORM items REPLACE "\n- \\*\\*([^*]+)\\*\\*:" "\\1" OUTPUT_VARIABLE listed)
+string(REGEX MATCHALL "(differs|same): [^\n]+" answers "${output}")
+if("${answers}" STREQUAL "")
+  message(SEND_ERROR "the program compares nothing")
+endif()
+set(compared "")
+foreach(answer IN LISTS answers)
+  string(REGEX REPLACE "^[a-z]+: " "" name "${answer}")
+  list(APPEND compared "${name}")
+  if(answer MATCHES "^differs" AND NOT name IN_LIST listed)
+    message(SEND_ERROR "docs/guide/migration.md does not list what differs: ${name}")
+  elseif(answer MATCHES "^same" AND name IN_LIST listed)
+    message(SEND_ERROR "docs/guide/migration.md lists what is the same: ${name}")
+  endif()
+endforeach()
+foreach(name IN LISTS listed)
+  if(NOT name IN_LIST compared)
+    message(SEND_ERROR "docs/guide/migration.md lists what the program does not compare: ${name}")
+  endif()
+endforeach()
