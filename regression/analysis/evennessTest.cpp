@@ -284,8 +284,8 @@ TEST(Evenness, TruncatedTrianglesBesideLines) {
         std::array<double, 2> border;
     };
     for (Row const &row :
-         {Row{14, 8, {0.26, 0.034}, {0.21, 0.04}}, Row{20, 10, {0.23, 0.023}, {0.21, 0.023}},
-          Row{9, 6, {0.39, 0.055}, {0.20, 0.09}}}) {
+         {Row{14, 8, {0.113, 0.034}, {0.111, 0.038}}, Row{20, 10, {0.103, 0.023}, {0.103, 0.023}},
+          Row{9, 6, {0.162, 0.055}, {0.158, 0.069}}}) {
         SCOPED_TRACE(row.numU);
         Strips const strips = measureStrips(row.numU, row.numV, TorusFaces::Triangles, truncate);
         for (std::size_t i = 0; i < 2; ++i) {
