@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "patchStream.h"
 
-#include "cell/baseType.h"
 #include "stream/patchPlans.h"
 
 #include "far_ext/executor.h"
@@ -29,47 +28,6 @@ constexpr Far::Index kMaxRange = 128;
 constexpr Far::Index kNumRangesWanted = 64;
 
 } // namespace
-
-/// \brief The points of base vertices that faces of a run have evaluated, for the next faces there: of a forest many
-/// faces have no other points.
-///
-/// All plain faces around a vertex give it the same point, to the bit, so that it is of no matter which one is the
-/// first.
-template <typename REAL>
-class PatchStream<REAL>::VertexPoints {
-public:
-    VertexPoints(Index numVertices, int size)
-        : _size(std::size_t(size)), _points(std::size_t(numVertices) * _size),
-          _states(new std::atomic<State>[std::size_t(numVertices)]()) {}
-
-    /// Writes those of some vertices, or returns false where one is not there.
-    bool Get(Far::ConstIndexArray const &verts, REAL *points) const {
-        for (Index const vert : verts) {
-            if (_states[std::size_t(vert)].load(std::memory_order_acquire) != State::Written) {
-                return false;
-            }
-            points = std::copy_n(&_points[std::size_t(vert) * _size], _size, points);
-        }
-        return true;
-    }
-
-    void Add(Index vert, REAL const *point) {
-        std::atomic<State> &state = _states[std::size_t(vert)];
-        State expected = State::None;
-        if (state.load(std::memory_order_relaxed) == State::None &&
-            state.compare_exchange_strong(expected, State::InWork, std::memory_order_relaxed)) {
-            std::copy_n(point, _size, &_points[std::size_t(vert) * _size]);
-            state.store(State::Written, std::memory_order_release);
-        }
-    }
-
-private:
-    enum class State : unsigned char { None, InWork, Written };
-
-    std::size_t const _size;
-    std::vector<REAL> _points;
-    std::unique_ptr<std::atomic<State>[]> const _states;
-};
 
 /// \brief Finds the tessellations of patches, or makes them: each is there until the next one is asked for.
 template <typename REAL>
@@ -144,10 +102,10 @@ template <typename REAL>
 class alignas(FarExt::internal::kCacheLine) PatchStream<REAL>::Worker {
 public:
     Worker(PatchStream const &stream, REAL const *meshPoints, PointDescriptor const &meshPointDesc,
-           std::vector<Values> const &values, Sink const &sink, VertexPoints *vertexPoints)
+           std::vector<Values> const &values, Sink const &sink)
         : _stream(stream), _finder(stream), _factory(stream._factory), _meshPoints(meshPoints),
-          _meshPointDesc(meshPointDesc), _values(values), _sink(sink), _vertexPoints(vertexPoints),
-          _results(values.size()), _resultStarts(values.size()) {}
+          _meshPointDesc(meshPointDesc), _values(values), _sink(sink), _results(values.size()),
+          _resultStarts(values.size()) {}
 
     /// \brief Makes the patch of a face that is no hole, or of one of its sections.
     ///
@@ -180,12 +138,6 @@ private:
         PointDescriptor const desc(_meshPointDesc.size);
         std::size_t const size = std::size_t(tessellation.GetNumCoords()) * std::size_t(desc.size);
         _points.resize(size);
-        bool const areVerticesKept = _vertexPoints && _surface.GetFace().type.GetPlain();
-        Far::ConstIndexArray const verts = _factory.GetLevel().GetFaceVertices(face);
-        if (areVerticesKept && tessellation.GetNumCoords() == verts.size() &&
-            _vertexPoints->Get(verts, _points.data())) {
-            return true;
-        }
         gather(_meshPoints, _meshPointDesc);
         if (_stream._options.HasDerivatives()) {
             _du.resize(size);
@@ -194,10 +146,6 @@ private:
                               _dv.data(), desc);
         } else {
             _surface.Evaluate(tessellation, _controlPoints.data(), desc, _points.data(), desc);
-        }
-        for (int i = 0; areVerticesKept && i < verts.size(); ++i) {
-            int const place = tessellation.GetVertexPlace(i);
-            _vertexPoints->Add(verts[i], &_points[std::size_t(place) * std::size_t(desc.size)]);
         }
         return true;
     }
@@ -230,7 +178,6 @@ private:
     PointDescriptor const _meshPointDesc;
     std::vector<Values> const &_values;
     Sink const &_sink;
-    VertexPoints *const _vertexPoints; // null: none are kept
     Surface<REAL> _surface;
     std::vector<REAL> _controlPoints;
     std::vector<REAL> _points;
@@ -598,18 +545,9 @@ bool PatchStream<REAL>::Run(REAL const meshPoints[], PointDescriptor const &mesh
     if (!FarExt::internal::Report(result, status)) {
         return false;
     }
-    // Sections have no vertices of their own, and derivatives belong to faces.
-    std::unique_ptr<VertexPoints> const vertexPoints =
-        _forest && arePlansKept && !_options.HasDerivatives()
-            ? std::make_unique<VertexPoints>(_factory.GetLevel().GetNumVertices(),
-                                             meshPointDesc.size)
-            : nullptr;
     bool const isDone = runWorkers(
         beginFace, endFace, arePlansKept,
-        [&] {
-            return std::make_unique<Worker>(*this, meshPoints, meshPointDesc, values, sink,
-                                            vertexPoints.get());
-        },
+        [&] { return std::make_unique<Worker>(*this, meshPoints, meshPointDesc, values, sink); },
         result);
     FarExt::internal::Report(result, status);
     return isDone;

@@ -57,8 +57,7 @@ private:
 /// and values of varying and face-varying data.
 ///
 /// **Memory** is the sum of Options::SetMaxMemory(), the cache of the factory, and the faces that the factory keeps for the
-/// next frame (SurfaceFactory::Options::SetMemoryOfFaces()), with 8 bytes for each of their corners; for a CellForest also a
-/// point for each vertex of the mesh.
+/// next frame (SurfaceFactory::Options::SetMemoryOfFaces()), with 8 bytes for each of their corners.
 ///
 /// A face whose tessellation would take more memory than a fourth of that has a patch for each of its
 /// *sections* (LevelTessellation::GetSection()).  Neighbouring sections share the points on their boundaries, as
@@ -256,7 +255,6 @@ public:
 
 private:
     class TessellationFinder;
-    class VertexPoints;
     class Worker;
     struct Batch;
 

@@ -58,15 +58,8 @@ int Surface<REAL>::GetNumControlPoints() const {
 }
 
 template <typename REAL>
-Far::Index const *Surface<REAL>::prefetchPoints() const {
-    if (!IsValid()) {
-        return nullptr;
-    }
-    BaseFace const &face = GetFace();
-    if (internal::PlainFaceType const *const plain = face.type.GetPlain()) {
-        plain->PrefetchRings();
-    }
-    return face.GetPoints();
+Far::Index const *Surface<REAL>::getPoints() const {
+    return IsValid() ? GetFace().GetPoints() : nullptr;
 }
 
 template <typename REAL>

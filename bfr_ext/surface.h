@@ -130,7 +130,7 @@ public:
     template <typename REAL_MESH>
     void GatherControlPoints(REAL_MESH const meshPoints[], PointDescriptor const &meshPointDesc,
                              REAL controlPoints[], PointDescriptor const &controlPointDesc) const {
-        Index const *const points = prefetchPoints();
+        Index const *const points = getPoints();
         Index const *const end = points + GetNumControlPoints();
         for (Index const *point = points; point != end; ++point) {
             REAL_MESH const *const from =
@@ -268,8 +268,7 @@ public:
 private:
     friend class SurfaceFactory;
 
-    // The control points, while what evaluates them is brought to the cache.
-    Index const *prefetchPoints() const;
+    Index const *getPoints() const;
     internal::PatchPlace findPatchPlace(REAL const uv[2], int numDerivatives) const;
     void computePatchPoints(REAL patchPoints[], PointDescriptor const &patchPointDesc,
                             std::vector<int> const *patches) const;

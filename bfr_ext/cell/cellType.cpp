@@ -129,11 +129,7 @@ std::size_t GetCellHeapSize(CellPatch const &cell) {
 CellType::CellType(CellTypes &types, CellPatch cell, CellRules const &rules)
     : _types(types), _cell(std::move(cell)), _numPoints(int(_cell.patch.sources.size())),
       _isInLattice(isInLattice(_cell.patch)), _isSharp(isSharp(_cell.patch)), _rules(rules),
-      _borderItems(types.GetMemory()), _patterns(types.GetMemory()) {
-    if (_isInLattice && IsWhole()) {
-        _foundItems = std::make_unique<FoundItems>();
-    }
-}
+      _borderItems(types.GetMemory()), _patterns(types.GetMemory()) {}
 
 std::vector<CellType::Child> const &CellType::GetChildren() const {
     std::call_once(_onceChildren, [&] {
@@ -327,32 +323,26 @@ CellType::BorderItem const &CellType::GetBorderItem(int const *turns, std::size_
     auto const get = [&](std::size_t i, auto const &make) -> BorderItem const & {
         return _borderItems.Get<BorderItem>(int(i), turns + i, turns + i + 1, make);
     };
-    auto const find = [&]() -> BorderItem const & {
-        return get(item, [&] {
-            // The others are asked for, too.
-            std::vector<CellPatch> patches = GatherBorder(_cell, turns, _rules.sdcOptions);
-            std::size_t const numEdges = patches.size() / 2;
-            std::vector<BorderItem> items;
-            for (std::size_t i = 0; i < patches.size(); ++i) {
-                std::vector<int> points = patches[i].patch.sources;
-                points.shrink_to_fit();
-                CellType const &type = _types.Find(CellPatch(patches[i]), _rules);
-                RingItem const &rings =
-                    RingItem::Get(type, patches[i], _types.GetRingCells(_rules));
-                items.push_back({&type, std::move(points), i < numEdges && turns[i] == 1,
-                                 rings.cell ? &rings : nullptr});
+    return get(item, [&] {
+        // The others are asked for, too.
+        std::vector<CellPatch> patches = GatherBorder(_cell, turns, _rules.sdcOptions);
+        std::size_t const numEdges = patches.size() / 2;
+        std::vector<BorderItem> items;
+        for (std::size_t i = 0; i < patches.size(); ++i) {
+            std::vector<int> points = patches[i].patch.sources;
+            points.shrink_to_fit();
+            CellType const &type = _types.Find(CellPatch(patches[i]), _rules);
+            RingItem const &rings = RingItem::Get(type, patches[i], _types.GetRingCells(_rules));
+            items.push_back({&type, std::move(points), i < numEdges && turns[i] == 1,
+                             rings.cell ? &rings : nullptr});
+        }
+        for (std::size_t i = 0; i < items.size(); ++i) {
+            if (i != item) {
+                get(i, [&] { return items[i]; });
             }
-            for (std::size_t i = 0; i < items.size(); ++i) {
-                if (i != item) {
-                    get(i, [&] { return items[i]; });
-                }
-            }
-            return items[item];
-        });
-    };
-    return _foundItems ? _foundItems->Get<BorderItem>(
-                             item * kMaxLatticeValence + std::size_t(turns[item]), find)
-                       : find();
+        }
+        return items[item];
+    });
 }
 
 std::vector<double> CellType::FindPatchPoints(PatchAges const &ages) const {
@@ -387,10 +377,6 @@ std::vector<CellType::Corner> const &CellType::GetCorners() const {
 }
 
 MemoryCount &CellType::GetMemory() const { return _types.GetMemory(); }
-
-std::size_t CellType::GetHeapSize() const {
-    return GetCellHeapSize(_cell) + internal::GetHeapSize(_foundItems);
-}
 
 // What is made with some rules besides the types of cells.
 struct CellTypes::OfRules {
@@ -438,11 +424,12 @@ CellType const &CellTypes::Find(CellPatch &&cell, CellRules const &rules) {
         return found->type;
     }
     trim(cell);
+    std::size_t const size = decltype(_types)::kEntrySize + key.size() + GetCellHeapSize(cell);
     auto const [entry, isNew] =
         _types.Add(std::make_unique<Entry const>(hash, key, *this, std::move(cell), rules), isSame);
     if (isNew) {
         ++_numTypes;
-        _memory.Add(decltype(_types)::kEntrySize + key.size() + entry->type.GetHeapSize());
+        _memory.Add(size);
     }
     return entry->type;
 }

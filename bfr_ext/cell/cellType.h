@@ -79,7 +79,6 @@ public:
     static constexpr int GetLatticeValence(int faceSize) {
         return faceSize == 3 ? 6 : faceSize == 4 ? 4 : faceSize == 6 ? 3 : 0;
     }
-    static constexpr std::size_t kMaxLatticeFaceSize = 6;
     /// Whether the surface has bounded curvature where the lattice is regular.
     bool HasBoundedCurvature() const {
         return _rules.hexSchemeOptions.faceMask != FarExt::FaceMask::Average &&
@@ -147,7 +146,6 @@ public:
     PatternTable &GetPatterns() const { return _patterns; }
     /// Counts what its types take.
     MemoryCount &GetMemory() const;
-    std::size_t GetHeapSize() const;
 
 private:
     // The child that has a corner, which corner of it that is, and the child's coordinates.
@@ -179,9 +177,6 @@ private:
     mutable std::once_flag _onceCorners;
     mutable std::vector<Corner> _corners;
     mutable PatternTable _borderItems;
-    static constexpr std::size_t kMaxLatticeValence = 6;
-    using FoundItems = FoundPatterns<2 * kMaxLatticeFaceSize * kMaxLatticeValence>;
-    std::unique_ptr<FoundItems> _foundItems; // of faces in lattices, by item and turn
     mutable PatternTable _patterns;
 };
 

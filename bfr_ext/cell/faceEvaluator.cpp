@@ -103,10 +103,6 @@ void FaceEvaluator<REAL>::evaluateLeaves(TessellationData const &tessellation, R
     CellPlan const *const ofDerivatives =
         results[1] ? &tessellation.GetCellPlan(isInLattice, true) : nullptr;
     if (!plain) {
-        if (!isInLattice) {
-            // Mostly no other face has the same, so that it would be waited for.
-            _face.type->GetStep().Prefetch();
-        }
         evaluator.Evaluate(*_face.type, plan, _pointDesc.size, _controlPoints, _pointDesc.stride,
                            results[0], resultDesc.stride);
         if (ofDerivatives) {

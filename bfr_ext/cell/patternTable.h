@@ -6,7 +6,6 @@
 #include "memoryCount.h"
 
 #include <algorithm>
-#include <atomic>
 #include <cstddef>
 #include <memory>
 #include <utility>
@@ -95,31 +94,6 @@ private:
 
     MemoryCount &_memory;
     EntryTable<Entry> _entries;
-};
-
-/// \brief Where some patterns of a table are that all faces ask for: these look them up once.
-///
-/// Any number of threads may use it.
-template <std::size_t SIZE>
-class FoundPatterns {
-public:
-    /// The pattern at a place, which find() gives where nobody has asked for it yet.
-    template <typename PATTERN, typename FIND>
-    PATTERN const &Get(std::size_t place, FIND const &find) {
-        std::atomic<void const *> &found = _patterns[place];
-        if (void const *const pattern = found.load(std::memory_order_acquire)) {
-            return *static_cast<PATTERN const *>(pattern);
-        }
-        PATTERN const &pattern = find();
-        found.store(&pattern, std::memory_order_release);
-        return pattern;
-    }
-
-    /// None, but for itself.
-    static constexpr std::size_t GetHeapSize() { return 0; }
-
-private:
-    std::atomic<void const *> _patterns[SIZE] = {};
 };
 
 } // namespace OpenSubdivHex::BfrExt::internal

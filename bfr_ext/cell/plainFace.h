@@ -73,12 +73,6 @@ public:
         FaceRings const *const rings = _rings.load(std::memory_order_acquire);
         return rings ? *rings : makeRings();
     }
-    /// Has these, where they are there, brought to the cache, while something else is done.
-    void PrefetchRings() const {
-        if (FaceRings const *const rings = _rings.load(std::memory_order_acquire)) {
-            rings->Prefetch();
-        }
-    }
     /// \brief As CellType::GetBorderItem() of an edge or, behind these, of a vertex that the rings have in a
     /// lattice, without the CellType of the face.
     CellType::BorderItem const &GetLatticeItem(int const *turns, std::size_t item) const;

@@ -267,12 +267,6 @@ public:
 
     VertexRings const &GetRings() const { return _rings; }
     std::size_t GetHeapSize() const { return GetHeapSizes(_rings, _edges, _verts); }
-    /// Has what the face is evaluated with brought to the cache, while something else is done.
-    void Prefetch() const {
-        PrefetchArray(_edges);
-        PrefetchArray(_verts);
-        _rings.Prefetch();
-    }
     /// Whether a vertex and its neighbours are in a regular lattice, or both vertices of an edge.
     bool IsVertexInLattice(int vert) const {
         return _rings.GetRings()[std::size_t(vert)].isInLattice;

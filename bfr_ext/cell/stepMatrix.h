@@ -13,20 +13,6 @@
 
 namespace OpenSubdivHex::BfrExt::internal {
 
-/// Has an array brought to the cache, while something else is done.
-template <typename T>
-void PrefetchArray(std::vector<T> const &array) {
-#if defined(__GNUC__)
-    constexpr std::size_t kLine = 64;
-    auto const *const bytes = reinterpret_cast<char const *>(array.data());
-    for (std::size_t i = 0; i < array.size() * sizeof(T); i += kLine) {
-        __builtin_prefetch(bytes + i);
-    }
-#else
-    static_cast<void>(array);
-#endif
-}
-
 /// \brief The points that a step makes of those of a cell, a row for each, in little memory, since there
 /// are many types of cells.
 ///
@@ -69,8 +55,6 @@ public:
             std::copy_n(point, size, result);
         }
     }
-    /// Has what Apply() reads brought to the cache, while something else is done.
-    void Prefetch() const { PrefetchArray(_block); }
     /// Writes the points that the step makes, \p paddedSize numbers each as those of the parent.
     template <typename REAL>
     void Apply(REAL const *points, std::size_t paddedSize, REAL *result) const {

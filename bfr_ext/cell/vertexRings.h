@@ -33,11 +33,6 @@ public:
 
     std::vector<Ring> const &GetRings() const { return _rings; }
     std::size_t GetHeapSize() const { return GetHeapSizes(_rings, _firsts, _block, _inner); }
-    /// Has what Apply() reads in single precision brought to the cache, while something else is done.
-    void Prefetch() const {
-        PrefetchArray(_rings);
-        PrefetchArray(_block);
-    }
     /// Points of all rings, of all steps.
     std::size_t GetNumPoints() const { return _numPoints; }
     /// The last step that made points.
