@@ -83,6 +83,7 @@ public:
             made.hasMask =
                 std::any_of(row.parts, row.parts + kHexagon, [](int part) { return part > 0; });
             made.ofVertex = row.ofVertex / kParts;
+            made.position = int(_rows.size()) - 1;
         }
     }
 
@@ -90,6 +91,7 @@ public:
         double weights[kHexagon];
         bool hasMask;
         double ofVertex;
+        int position; // in the table
     };
     // Null where there is none.
     Row const *Find(int numSteps, int place) const {
@@ -138,7 +140,7 @@ QuadFlags AppendToQuadFlags(QuadFlags flags, int numSteps, int outDigit, int inD
 
 QuadRow FindQuadRow(int numSteps, QuadFlags flags) {
     static Rows const rows;
-    static constexpr QuadRow kNone = {nullptr, false, -1};
+    static constexpr QuadRow kNone = {nullptr, false, -1, -1};
     if (flags.out == 0 || flags.in == 0 || numSteps == 0) {
         return kNone;
     }
@@ -147,7 +149,8 @@ QuadRow FindQuadRow(int numSteps, QuadFlags flags) {
     int const path = std::min(pathOut, pathIn);
     bool const isBackwards = pathIn < pathOut;
     auto const make = [isBackwards](Rows::Row const *row) {
-        return row ? QuadRow{row->hasMask ? &row->weights : nullptr, isBackwards, row->ofVertex}
+        return row ? QuadRow{row->hasMask ? &row->weights : nullptr, isBackwards, row->ofVertex,
+                             row->position}
                    : kNone;
     };
     if (numSteps >= kNumStepsToConstantMasks) {

@@ -59,10 +59,11 @@ struct QuadRow {
     bool isBackwards;
     /// Its weight in V' of its vertex; negative where they tell none.
     double vertexWeight;
+    int position; ///< of the row in quadRows.inl; negative where they tell none
 };
 
 /// Of a corner at a level that \p numSteps hexagonal steps made.
-QuadRow FindQuadRow(int numSteps, QuadFlags flags);
+OPENSUBDIVHEX_API QuadRow FindQuadRow(int numSteps, QuadFlags flags);
 
 } // namespace OpenSubdivHex::FarExt::internal
 

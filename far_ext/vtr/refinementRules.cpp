@@ -491,7 +491,7 @@ void RefinementRules::DenseRuleMaker::addRule(FaceTags const &tags) {
         QuadCorner const *const ofQuad =
             quad != tags.quadCorners.end() && quad->corner == corner ? quad++ : nullptr;
         QuadRow const byPath =
-            ofQuad && size == kHexagon ? findQuadRow(*ofQuad) : QuadRow{nullptr, false, -1};
+            ofQuad && size == kHexagon ? findQuadRow(*ofQuad) : QuadRow{nullptr, false, -1, -1};
         float const ofPath = byPath.mask ? ofQuad->flags.GetShare() : 0;
         std::size_t const circulantRow =
             _rules._circulants[std::size_t(size)] + std::size_t(size - i);
