@@ -25,7 +25,7 @@ QuadFlags makeBaseFlags(Level const &level, Index vert) {
     QuadFlag const flag = FindQuadFlag(faces.size(), [&](int i) {
         return level.IsHalfFace(faces[i]) ? 0 : level.GetFaceSize(faces[i]);
     });
-    if (faces.size() == 0 || flag == 0 || level.IsNonManifold(vert)) {
+    if (faces.empty() || flag == 0 || level.IsNonManifold(vert)) {
         return {};
     }
     Far::ConstIndexArray const edges = level.GetVertexEdges(vert);
