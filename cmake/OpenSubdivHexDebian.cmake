@@ -79,7 +79,7 @@ file(WRITE ${debianDir}/triggers "activate-noawait ldconfig\n")
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_CONTROL_EXTRA ${debianDir}/triggers)
 
 opensubdivhex_add_debian_package(development libopensubdivhex-dev libdevel
-  "This package has the headers, the guide, and the files for CMake and pkg-config."
+  "This package has the headers, the guide, and files for CMake and pkg-config."
   "${libraryPackage} (= ${debianVersion})" libosd-dev)
 
 if(TARGET hexrefine)

@@ -65,7 +65,7 @@ public:
     /// Without factorization and without intermediate levels the table holds level L in terms of
     /// level L - 1 (Far does not support that combination).
     struct Options {
-        StencilMode interpolationMode = INTERPOLATE_VERTEX; ///< what the stencils are of
+        StencilMode interpolationMode = INTERPOLATE_VERTEX; ///< the kind of data
         /// Whether one stencil of weight 1 for each control vertex comes first.
         bool generateControlVerts = false;
         bool generateIntermediateLevels = true; ///< levels 1 ... L, else L alone
@@ -84,8 +84,8 @@ public:
     /// face have the same indices, so that some weights at borders and creases are 0.
     ///
     /// On a sharp border line that two meshes share, with the same sharpness at its vertices, the
-    /// weights of the same control vertices are the same, bit for bit.  The values are so up to the
-    /// order of the sum alone, which is that of the indices; PrimvarRefiner and
+    /// weights of the same control vertices are the same, bit for bit.  Values may still differ by the
+    /// order of their sums, which follows the indices.  PrimvarRefiner and
     /// OsdExt::RefinementEvaluator give the same values, bit for bit.
     ///
     /// \return  null on failure: InvalidArgument (negative maxLevel, mode or channel out of range) or
@@ -114,12 +114,12 @@ public:
     /// \brief Makes the table of the refined faces, and halves of hexagons, that lie in some base
     /// faces: those whose TopologyLevel::GetFaceBaseFace() is one of \p baseFaces.
     ///
-    /// For each level in the table it has the vertices of these faces, or their values, in ascending order:
-    /// GetVerticesOfFaces() says which; the stencils are, bit for bit, those that Create() makes for
-    /// them, and index the control vertices of the whole mesh.  A hexagon that lies half in the
-    /// selection has the four vertices of that half (kHexagonHalves).  What selections that share no
-    /// base face have is disjoint but for the vertices along their borders; all base faces have all
-    /// faces.  Time and memory are proportional to the selection and the faces around it.
+    /// For each level the table has a stencil for each vertex, or value, of these faces, in ascending order
+    /// (GetVerticesOfFaces()).  Stencils have the bits of Create(), and index the control vertices of the
+    /// whole mesh.  Of a hexagon that lies half in the selection, the table has the four vertices of that
+    /// half (kHexagonHalves).  Two selections without a common base face share only the vertices along
+    /// their borders; all base faces together have all faces.  Time and memory are proportional to the
+    /// selection and the faces around it.
     ///
     /// \param baseFaces  in any order, repeated or not; none gives a table without stencils
     /// \return  null on failure: as Create(); InvalidArgument, which names the face, for one out of
@@ -129,8 +129,8 @@ public:
                                                       Options options,
                                                       CallStatus *status = nullptr);
 
-    /// \brief The vertices, or values of options.fvarChannel, that CreateOfFaces() makes stencils
-    /// for at \p level (0: with generateControlVerts), in the order of the stencils: ascending.
+    /// \brief The vertices, or values of options.fvarChannel, of CreateOfFaces() at \p level (0: with
+    /// generateControlVerts), in the order of the stencils: ascending.
     ///
     /// \return  empty on failure: InvalidArgument as CreateOfFaces(), or for a level that the
     ///          refiner does not have.
@@ -255,7 +255,7 @@ private:
 /// faces are counter-clockwise.  They are derivatives by coordinates u and v in which the edges of
 /// the level are about 1 long, exactly so where the faces around are laid out regularly; along a
 /// sharp boundary or crease du follows the curve.  From one point to the next these coordinates
-/// turn.  What else they are depends on the point:
+/// turn.  Points and tangents depend on the place:
 ///
 /// | point             | limit                                                                   |
 /// |-------------------|-------------------------------------------------------------------------|
@@ -306,8 +306,8 @@ public:
         bool generateFaceCenters = false;   ///< the centres of faces
         bool generate1stDerivatives = true; ///< else the table has no derivative weights
 
-        /// Else the stencils are of the vertices of the level, as in StencilTableFactory of those of
-        /// the level before: an evaluator applies them to the refined level.
+        /// Whether indices are control vertices; else they are vertices of the level, and an evaluator
+        /// applies the table to the refined level.
         bool factorizeIntermediateLevels = true;
     };
 

@@ -793,7 +793,7 @@ void BindStreams(py::module_ &module) {
             "Args:\n"
             "    points: those of the mesh, shape (points,) or (points, length): float32 and "
             "float64\n"
-            "        are read in place, and results are as they are\n"
+            "        are read in place, and results have the same type\n"
             "    sink: a function of a Patch; False ends the stream, None and True go on.  Threads "
             "of\n"
             "        the library call it, one at a time, in any order of faces; what it raises "

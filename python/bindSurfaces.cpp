@@ -312,11 +312,17 @@ void BindSurfaces(py::module_ &module) {
     py::class_<FaceTessellation>(
         module, "LevelTessellation",
         "LevelTessellation(face_size, levels, facet_size=3)\n\n"
-        "A base face cut into facets, whose neighbours fit if both take the same level for the\n"
-        "edge that they share.\n\n"
-        "levels is one of 0 ... 12 for all; or one for each edge, edge i from vertex i to the "
-        "next;\nor those of the edges and that of the inside.  facet_size is 3 for triangles, 4 "
-        "for cells as\nthey are, with -1 behind triangles, where all are quads, or 0 for polygons.")
+        "A base face cut into facets.  Two faces fit if they take the same level for their common "
+        "edge.\n\n"
+        "Args:\n"
+        "    face_size: vertices of the face\n"
+        "    levels: 0 ... 12: one for all; or one for each edge, edge i from vertex i to the "
+        "next; "
+        "or\n"
+        "        those of the edges, then that of the inside\n"
+        "    facet_size: 3 for triangles; 4 for quads, where all cells are quads, else triangles "
+        "with -1\n"
+        "        behind them; 0 for polygons")
         .def(py::init(&makeTessellation), py::arg("face_size"), py::arg("levels"),
              py::arg("facet_size") = 3)
         .def(py::pickle(
@@ -357,13 +363,13 @@ void BindSurfaces(py::module_ &module) {
     py::class_<FaceSurface>(
         module, "Surface",
         "The limit surface of a base face, made by a SurfaceFactory: a function of u and v.\n\n"
-        "Points are those of the mesh, numbers of the shape (points,) or (points, length): "
-        "float32\n"
-        "and float64 are read in place.  Results are float64.  uv is of the shape (places, 2), or "
-        "a\n"
-        "LevelTessellation.  At a (u, v) they are those of bicubic patches, some millionths of the "
-        "size\n"
-        "of the mesh from the surface; those of a LevelTessellation, and stencils, are exact.")
+        "Points of the mesh have the shape (points,) or (points, length); float32 and float64 are "
+        "read\n"
+        "in place.  uv has the shape (places, 2), or is a LevelTessellation.  Results are "
+        "float64.\n\n"
+        "Points of a LevelTessellation, and stencils, are exact.  Points at a (u, v) lie on "
+        "bicubic\n"
+        "patches, some millionths of the mesh's size from the surface.")
         .def_property_readonly("face_size", &FaceSurface::GetFaceSize, "Vertices of the face.")
         .def_property_readonly("control_points", &FaceSurface::GetControlPoints,
                                "int32: the points of the mesh that it depends on, those of the "
@@ -392,13 +398,14 @@ void BindSurfaces(py::module_ &module) {
     py::class_<FaceSurfaceFactory, std::shared_ptr<FaceSurfaceFactory>>(
         module, "SurfaceFactory",
         "SurfaceFactory(refiner)\n\n"
-        "Makes the limit surfaces of the faces of level 0, for which the refiner need not be\n"
-        "refined.  Behind a first step they are those of level 1: the refiner has to be refined "
+        "Makes the limit surfaces of the faces of level 0.  The refiner needs no refinement.\n\n"
+        "Behind a first step the faces, and the points of the mesh, are those of level 1: refine "
         "to\n"
-        "it with full topology, and points are those of level 1.  Raises StatusError where it is "
-        "not,\n"
-        "and where levels are not made by hexagonal steps; once the refiner refines again, the\n"
-        "factory raises RuntimeError.")
+        "it with full topology before.  Once the refiner refines again, the factory raises\n"
+        "RuntimeError.\n\n"
+        "Raises StatusError where level 1 is missing, and for levels that are not made by "
+        "hexagonal\n"
+        "steps.")
         .def(py::init<std::shared_ptr<Refiner>>(), py::arg("refiner").none(false))
         .def_property_readonly("num_faces", &FaceSurfaceFactory::GetNumFaces,
                                "Faces that may have surfaces.")

@@ -95,10 +95,9 @@ public:
             py::gil_scoped_release const release;
             std::unique_lock const lock(_mutex);
             if (_numHolds != 0) {
-                throw py::buffer_error(
-                    "arrays show the levels of this refiner, or a stream reads them, "
-                    "and they cannot change as long: delete the arrays, or "
-                    "copy them before");
+                throw py::buffer_error("the levels of this refiner cannot change while arrays show "
+                                       "them or a stream reads them: delete the arrays, or copy "
+                                       "them before");
             }
             function(*_refiner, &status);
             if (status.IsOk()) {

@@ -31,17 +31,27 @@ public:
     }
     py::array_t<double> GetCoords() const {
         py::array_t<double> coords({py::ssize_t(_tessellation.GetNumCoords()), py::ssize_t(2)});
-        _tessellation.GetCoords(coords.mutable_data());
+        double *const data = coords.mutable_data();
+        py::gil_scoped_release const release;
+        _tessellation.GetCoords(data);
         return coords;
     }
     py::array_t<int> GetFacetSizes() const {
-        std::vector<int> sizes(std::size_t(_tessellation.GetNumFacets()));
-        _tessellation.GetFacetSizes(sizes.data());
+        std::vector<int> sizes;
+        {
+            py::gil_scoped_release const release;
+            sizes.resize(std::size_t(_tessellation.GetNumFacets()));
+            _tessellation.GetFacetSizes(sizes.data());
+        }
         return TakeOver(std::move(sizes));
     }
     py::array_t<int> GetFacets() const {
         int const stride = _tessellation.GetFacetStride();
-        std::vector<int> facets = TakeFacets(_tessellation);
+        std::vector<int> facets;
+        {
+            py::gil_scoped_release const release;
+            facets = TakeFacets(_tessellation);
+        }
         py::array_t<int> array = TakeOver(std::move(facets));
         return stride > 0 ? array.reshape({_tessellation.GetNumFacets(), stride}) : array;
     }

@@ -45,9 +45,9 @@ def test_other_threads_run_while_the_library_works():
         table, values = osh.StencilTable(refiner, max_level=4), []
         values.append(osh.CpuEvaluator.eval_stencils(table, positions))
         surfaces = osh.SurfaceFactory(osh.TopologyRefiner(faces, face_mask="smooth"))
-        stream, view = osh.PatchStream(surfaces, 5), osh.View(osh.Camera((5, 0, 1)), flatness=0.1)
+        stream, view = osh.PatchStream(surfaces, 6), osh.View(osh.Camera((5, 0, 1)), flatness=0.1)
         works = [lambda: refiner.refine_uniform(5),
-                 lambda: stream.evaluate(positions),
+                 lambda: stream.run(positions, lambda patch: None),
                  lambda: view.make_forest(surfaces, positions),
                  lambda: copy.copy(refiner),
                  lambda: osh.StencilTable(refiner, max_level=4),
