@@ -4,6 +4,7 @@
 #include "lanes.h"
 #include "patchCorners.h"
 
+#include "far_ext/rules/quadPath.h"
 #include "far_ext/vtr/irregularFeatures.h"
 
 #include <algorithm>
@@ -43,12 +44,12 @@ public:
                             refinement.GetVertexChildVertex(_corners.GetVertex(ring[0]))));
                     });
     }
-    Weights const &FindFVertex() {
-        constexpr int kNumFaces = 3;
-        return find(Kind::FVertex, {}, [](Refinement const &, RefinementRules const &rules) {
-            FarExt::VertexVertexMask const plain = rules.GetPlainVertexMask(kNumFaces);
-            return std::vector<double>{plain.vertexWeight, plain.faceWeight};
-        });
+    // Of the F-vertices of all faces around a vertex: of itself, and of those of its F-face and of its two E-faces.
+    Weights const &FindFVertex(std::vector<int> const &ring) {
+        return find(Kind::FVertex, getKey(ring),
+                    [&](Refinement const &refinement, RefinementRules const &rules) {
+                        return findFVertex(refinement, rules, ring[0]);
+                    });
     }
     Weights const &FindFace(int size) {
         return find(Kind::Face, {size}, [&](Refinement const &, RefinementRules const &rules) {
@@ -78,9 +79,9 @@ private:
     // Key of the masks around a vertex.
     std::vector<int> getKey(std::vector<int> const &ring) const {
         int const numFaces = int(ring.size());
-        return {numFaces, int(FarExt::internal::FindFacesAround(numFaces, [&](int i) {
-                    return _corners.GetFaceSize(ring[std::size_t(i)]);
-                }))};
+        auto const getFaceSize = [&](int i) { return _corners.GetFaceSize(ring[std::size_t(i)]); };
+        return {numFaces, FarExt::internal::FindQuadFlag(numFaces, getFaceSize),
+                int(FarExt::internal::FindFacesAround(numFaces, getFaceSize))};
     }
 
     template <typename MAKE>
@@ -99,6 +100,19 @@ private:
 
     static std::vector<double> toWeights(VertexRule const &rule) {
         return {rule.weights[rule.numSources - 1], rule.faceWeight};
+    }
+
+    static std::vector<double> findFVertex(Refinement const &refinement,
+                                           RefinementRules const &rules, int corner) {
+        FarExt::internal::Level const &child = *refinement.child;
+        Far::Index const vert = refinement.GetCornerChildVertex(Far::Index(corner));
+        VertexRule const rule = rules.GetVertexRule(vert);
+        std::vector<double> weights = {rule.weights[0], 0, 0};
+        Far::ConstIndexArray const faces = child.GetVertexFaces(vert);
+        for (int i = 0; i < faces.size(); ++i) {
+            weights[faces[i] < child.numFFaces ? 1 : 2] = rule.GetFaceWeight(i);
+        }
+        return weights;
     }
 
     // From the V-vertex at the corner on, a row for each F-vertex.
@@ -128,13 +142,12 @@ private:
 
 bool InnerRings::Init(LimitPatch const &patch, std::vector<int> const &corners, InnerMasks &masks) {
     MaskFinder finder(masks, patch);
-    _fVertex = &finder.FindFVertex();
     std::vector<int> ring;
     for (int const first : corners) {
         if (!finder.GetCorners().FindRing(first, ring) || ring.size() > kMaxFaces) {
             return false;
         }
-        Center center = {&finder.FindVertex(ring), {}};
+        Center center = {&finder.FindVertex(ring), &finder.FindFVertex(ring), {}};
         center.spokes.reserve(ring.size());
         int before = ring.back();
         for (int const corner : ring) {
@@ -206,7 +219,7 @@ void InnerRings::apply(Ring const &ring, Center const &center, std::size_t padde
         inner += ring.GetBlockSize(face, RingStep::Second) * stride;
     }
     // The V-vertices of F-vertices need the next block.
-    REAL const *const weights = _fVertex->Get(REAL());
+    REAL const *const weights = center.fVertex->Get(REAL());
     outer = points + ring.GetBlock(0, RingStep::First) * stride;
     REAL *last = begin;
     inner = begin;
@@ -217,11 +230,13 @@ void InnerRings::apply(Ring const &ring, Center const &center, std::size_t padde
             auto const load = [&](REAL const *block, std::size_t place) {
                 return Lanes<REAL>::Load(block + place * stride + first);
             };
-            Lanes<REAL> const sum = load(inner, kFVerticesOfHexagon + kHexagon) +
-                                    load(inner, kFVerticesOfHexagon + kHexagon - 1) +
-                                    load(next, kFVerticesOfHexagon + 1);
-            (load(outer, 1) * weights[0] + sum * weights[1])
-                .Store(inner + kVVertex * stride + first);
+            Lanes<REAL> const ofFFace = load(inner, kFVerticesOfHexagon + kHexagon);
+            Lanes<REAL> const ofEFace = load(inner, kFVerticesOfHexagon + kHexagon - 1);
+            Lanes<REAL> const ofNext = load(next, kFVerticesOfHexagon + 1);
+            Lanes<REAL> const faces = weights[1] == weights[2]
+                                          ? (ofFFace + ofEFace + ofNext) * weights[1]
+                                          : ofFFace * weights[1] + (ofEFace + ofNext) * weights[2];
+            (load(outer, 1) * weights[0] + faces).Store(inner + kVVertex * stride + first);
         }
         writeCenter<PADDED_SIZE>(ring, center, face, begin, paddedSize, inner);
         outer += ring.GetBlockSize(face, RingStep::First) * stride;

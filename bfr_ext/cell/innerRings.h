@@ -94,7 +94,8 @@ private:
     struct Center {
         std::size_t GetHeapSize() const { return internal::GetHeapSize(spokes); }
 
-        Weights const *vertex; // its own, and that of F-vertices
+        Weights const *vertex;  // its own, and that of F-vertices
+        Weights const *fVertex; // of F-vertices there: its own, of its F-face and of its E-faces
         std::vector<Spoke> spokes;
     };
 
@@ -109,7 +110,6 @@ private:
     void apply(Ring const &ring, Center const &center, std::size_t paddedSize, REAL *points) const;
 
     std::vector<Center> _rings;
-    Weights const *_fVertex = nullptr; // as of a center, of vertices with three faces
 };
 
 } // namespace OpenSubdivHex::BfrExt::internal

@@ -44,7 +44,8 @@ std::vector<Far::Index> findStepVertices(CellRefinement const &refinement) {
 
 // Product of the first step of an edge or a vertex.
 Cell makeItemCell(CellPatch const &item, CellRules const &rules) {
-    return {std::move(refine(item, rules).children[0]), FindRingLayouts(item.patch, item.locals)};
+    return {std::move(refine(item, rules).children[0]),
+            FindRingLayouts(item.patch, item.locals, false)};
 }
 
 CellKind getChildKind(CellKind kind) { return kind == CellKind::Edge ? CellKind::LongEdge : kind; }
@@ -143,6 +144,7 @@ void RingKey::Add(RingLayout const &ring) {
     _numbers.insert(_numbers.end(), ring.faceSizes.begin(), ring.faceSizes.end());
     addVertex(ring.center);
     std::for_each(ring.verts.begin(), ring.verts.end(), [&](int vert) { addVertex(vert); });
+    _numbers.insert(_numbers.end(), ring.flags.begin(), ring.flags.end());
 }
 
 void RingPlaces::AddKey(std::vector<int> &key) const {
@@ -206,9 +208,10 @@ RingItem const &RingItem::Get(CellType const &type, CellPatch const &patch, Ring
         if (!isPlain || isInLattice) {
             return RingItem();
         }
-        item.cell = &cells.Find(getChildKind(patch.kind),
-                                RingKey(FindRingLayouts(patch.patch, patch.locals)),
-                                [&] { return makeItemCell(patch, cells.GetRules()); });
+        item.cell = &cells.Find(
+            getChildKind(patch.kind),
+            RingKey(FindRingLayouts(patch.patch, patch.locals, cells.GetMasks().AreUsed())),
+            [&] { return makeItemCell(patch, cells.GetRules()); });
         return item;
     });
 }
@@ -218,7 +221,8 @@ class FaceRings::Maker {
 public:
     Maker(FaceRings &face, CellPatch const &cell, RingCells &cells)
         : _face(face), _cell(cell), _cells(cells), _numEdges(cell.GetNumCorners()),
-          _layouts(FindRingLayouts(cell.patch, getCorners(_numEdges))) {}
+          _layouts(FindRingLayouts(cell.patch, getCorners(_numEdges), cells.GetMasks().AreUsed())) {
+    }
 
     void FindCells() {
         std::for_each(_layouts.begin(), _layouts.end(),

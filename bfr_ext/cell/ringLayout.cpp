@@ -3,6 +3,8 @@
 
 #include "patchCorners.h"
 
+#include "far_ext/rules/quadPath.h"
+
 #include <algorithm>
 #include <array>
 #include <map>
@@ -65,17 +67,20 @@ RingLayout RingLayout::From(int firstFace) const {
     };
     rotate(result.faceSizes, firstFace);
     rotate(result.verts, first);
+    rotate(result.flags, result.flags.empty() ? 0 : firstFace);
     return result;
 }
 
-std::vector<RingLayout> FindRingLayouts(LimitPatch const &patch, std::vector<int> const &corners) {
+std::vector<RingLayout> FindRingLayouts(LimitPatch const &patch, std::vector<int> const &corners,
+                                        bool hasFlags) {
     PatchCorners const ofPatch(patch);
     int const numVerts = int(patch.sources.size());
     std::vector<RingLayout> layouts;
     layouts.reserve(corners.size());
     std::vector<int> ring;
+    std::vector<int> ringOfNeighbor;
     for (int const firstCorner : corners) {
-        RingLayout layout = {ofPatch.GetVertex(firstCorner), {}, {}};
+        RingLayout layout = {ofPatch.GetVertex(firstCorner), {}, {}, {}};
         ofPatch.FindRing(firstCorner, ring);
         std::size_t numVertsOfRing = 0;
         for (int const corner : ring) {
@@ -90,6 +95,16 @@ std::vector<RingLayout> FindRingLayouts(LimitPatch const &patch, std::vector<int
             for (int i = 0; i < size; ++i) {
                 layout.verts.push_back(numVerts + ofPatch.GetNext(corner, i));
             }
+            if (hasFlags) {
+                bool const isInside = ofPatch.FindRing(ofPatch.GetNext(corner, 1), ringOfNeighbor);
+                layout.flags.push_back(isInside ? FarExt::internal::FindQuadFlag(
+                                                      int(ringOfNeighbor.size()),
+                                                      [&](int i) {
+                                                          return ofPatch.GetFaceSize(
+                                                              ringOfNeighbor[std::size_t(i)]);
+                                                      })
+                                                : 0);
+            }
         }
         layouts.push_back(std::move(layout));
     }
@@ -102,7 +117,7 @@ std::vector<RingLayout> FindInnerLayouts(LimitPatch const &patch,
     std::vector<RingLayout> layouts;
     layouts.reserve(rings.size());
     for (RingLayout const &ring : rings) {
-        RingLayout layout = {made.FindVVertex(ring.center), ring.faceSizes, {}};
+        RingLayout layout = {made.FindVVertex(ring.center), ring.faceSizes, {}, {}};
         auto const addFVertices = [&](int const *verts, int size) {
             for (int i = 0; i < size; ++i) {
                 layout.verts.push_back(made.FindFVertex(verts[i], verts[(i + 1) % size]));

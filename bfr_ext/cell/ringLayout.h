@@ -99,15 +99,18 @@ struct RingLayout {
     int center;
     std::vector<int> faceSizes;
     std::vector<int> verts; ///< from the block of face 0 to that of the last
+    /// With masks that depend on those, by face: the flag of the neighbor where it begins, see FindQuadFlag.
+    std::vector<int> flags;
 
     /// The layout of the first step from another face on.
     RingLayout From(int firstFace) const;
 };
 /// The layout of the first step from a patch.
 ///
-/// \param corners  those of VertexRings::Init(), which finds rings there
+/// \param corners   those of VertexRings::Init(), which finds rings there
+/// \param hasFlags  whether masks depend on flags of neighbors, as Smooth's do
 std::vector<RingLayout> FindRingLayouts(FarExt::internal::LimitPatch const &patch,
-                                        std::vector<int> const &corners);
+                                        std::vector<int> const &corners, bool hasFlags);
 /// The layout of the second step, from a patch that the first step makes.
 ///
 /// \param rings  those of the first step

@@ -21,8 +21,7 @@ bool hasFeatures(LimitPatch const &patch) {
     };
     return hasTags(patch.edgeSharpness) || hasTags(patch.diagonalSharpness) ||
            hasTags(patch.vertSharpness) || !patch.nonManifoldVerts.empty() ||
-           !patch.lineCorners.empty() || !patch.sharpVerts.empty() ||
-           !patch.sectorCorners.empty() || !patch.irregularCorners.empty() ||
+           !patch.lineCorners.empty() || !patch.sharpVerts.empty() || patch.HasCornerTags() ||
            !patch.irregularVerts.empty() || patch.numHexagonalSteps != 0;
 }
 

@@ -656,14 +656,15 @@ LimitMask FaceLimitMaskFinder::Find(Index face) const {
     }
     // The F-face has no vertex with one face.
     Index const first = _level.faceFirstCorner[face];
-    bool const isBesideOneFace = !_level.GetSectorCorners(first, first + size).empty();
+    bool const isBesideOneFace = !FindCornerTags(_level.sectorCorners, first, first + size).empty();
     return isBesideOneFace ? stepBack(std::move(mask), face) : mask;
 }
 
-// The F-face is a level of its own here: it has no sector corners and no irregular ones, and a
-// diagonal that is less sharp.
+// The F-face is a level of its own here: it has no sector corners and no irregular ones, a diagonal that
+// is less sharp, and flags from quads.
 LimitMask FaceLimitMaskFinder::findAfterStep(Index face) const {
     int const size = _level.GetFaceSize(face);
+    Index const first = _level.faceFirstCorner[face];
     Level child;
     child.depth = _level.depth + 1;
     child.numFaces = 1;
@@ -678,6 +679,15 @@ LimitMask FaceLimitMaskFinder::findAfterStep(Index face) const {
     child.diagonalSharpness[0] =
         Crease(_sdcOptions).SubdivideUniformSharpness(_level.GetDiagonalSharpness(face));
 
+    child.numHexagonalSteps = _level.numHexagonalSteps + 1;
+    if (size == HexIndexing::kNumEFaceCorners) {
+        for (QuadCorner const &quad : FindCornerTags(_level.quadCorners, first, first + size)) {
+            QuadFlags const flags = AppendToQuadFlags(quad.flags, _level.numHexagonalSteps, 0, 0);
+            if (flags.HasAny()) {
+                child.quadCorners.push_back({quad.corner - first, flags});
+            }
+        }
+    }
     return stepBack(FaceLimitMaskFinder(child, _sdcOptions, _schemeOptions).Find(0), face);
 }
 

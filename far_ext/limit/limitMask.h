@@ -82,9 +82,18 @@ public:
     LimitMask Find(Far::Index face) const;
 
     /// Whether a face has the mask of all with its size.
-    bool IsPlain(Far::Index face) const { return _rules->GetFaceRule(face).IsCirculant(); }
+    bool IsPlain(Far::Index face) const {
+        return _rules->GetFaceRule(face).IsCirculant() && !hasFlags(face);
+    }
 
 private:
+    // Whether its F-face may have other masks, as a hexagon may that is made of quads.
+    bool hasFlags(Far::Index face) const {
+        Far::Index const first = _level.faceFirstCorner[face];
+        Far::Index const end = _level.faceFirstCorner[face + 1];
+        return end - first == HexIndexing::kNumEFaceCorners &&
+               !FindCornerTags(_level.quadCorners, first, end).empty();
+    }
     LimitMask findAfterStep(Far::Index face) const;
     LimitMask stepBack(LimitMask mask, Far::Index face) const;
     std::vector<double> stepBack(std::vector<double> const &cWeights, Far::Index face) const;

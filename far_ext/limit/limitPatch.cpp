@@ -8,6 +8,7 @@
 #include "far_ext/vtr/sharpFeatures.h"
 
 #include <cstring>
+#include <iterator>
 
 namespace OpenSubdivHex::FarExt::internal {
 
@@ -264,14 +265,14 @@ void LimitPatchGatherer::addFace(Index face, int local, bool isRing, LimitPatch 
         patch.faceVerts.push_back(vert);
         // Only corners at the neighbours of vertex 0 matter of the faces further out.
         if (isRing || vert < _numComplete) {
-            for (SectorCorner sector : _level.GetSectorCorners(corner, corner + 1)) {
-                sector.corner = patchFirst + i;
-                patch.sectorCorners.push_back(sector);
-            }
-            for (IrregularCorner irregular : _level.GetIrregularCorners(corner, corner + 1)) {
-                irregular.corner = patchFirst + i;
-                patch.irregularCorners.push_back(irregular);
-            }
+            CornerTags::ForEachKind(
+                [&](auto const &ofLevel, auto &ofPatch) {
+                    for (auto tag : FindCornerTags(ofLevel, corner, corner + 1)) {
+                        tag.corner = patchFirst + i;
+                        ofPatch.push_back(tag);
+                    }
+                },
+                _level, patch);
         }
     }
     patch.faceSizes.push_back(size);
@@ -378,7 +379,7 @@ bool LimitPatchGatherer::hasIrregularities(LimitPatch const &patch) const {
     auto const isIrregular = [this](Index source) {
         return _level.GetNumVertexFaces(source) >= kMinIrregularFaces;
     };
-    if (_level.numHexagonalSteps == 0 || !patch.irregularCorners.empty() ||
+    if (_level.numHexagonalSteps == 0 || patch.HasCornerTags() ||
         std::any_of(patch.sources.begin(), patch.sources.begin() + _numComplete, isIrregular)) {
         return true;
     }
@@ -441,20 +442,21 @@ void LimitPatchGatherer::AddSignature(LimitPatch &patch) {
         auto const [first, second] = std::minmax(sharp.neighbors[0], sharp.neighbors[1]);
         signature.insert(signature.end(), {sharp.vert, first, second});
     }
-    for (SectorCorner const &sector : patch.sectorCorners) {
-        signature.insert(signature.end(), {sector.corner, getBits(sector.sectorSize),
-                                           getBits(sector.weight), int(sector.kind)});
-    }
     signature.push_back(int(patch.sharpEnds.size()));
     for (SharpEnd const &end : patch.sharpEnds) {
         signature.insert(signature.end(), {end.vert, getBits(end.sharpness)});
     }
     signature.push_back(patch.numHexagonalSteps);
-    for (IrregularCorner const &irregular : patch.irregularCorners) {
-        signature.insert(signature.end(),
-                         {irregular.corner, irregular.numFaces, getBits(irregular.weight),
-                          irregular.kind, int(irregular.facesAround)});
-    }
+    CornerTags::ForEachKind(
+        [&signature](auto const &tags) {
+            signature.push_back(int(tags.size()));
+            for (auto const &tag : tags) {
+                int words[sizeof tag / sizeof(int)];
+                std::memcpy(words, &tag, sizeof tag);
+                signature.insert(signature.end(), std::begin(words), std::end(words));
+            }
+        },
+        patch);
 }
 
 void LimitPatchGatherer::clear(LimitPatch &patch) {
@@ -607,10 +609,9 @@ void BuildPatchLevel(LimitPatch const &patch, Level &level) {
         level.lineEdges.push_back({level.faceEdges[patch.lineCorners[i]], patch.lines[i]});
     }
     level.sharpVerts = patch.sharpVerts;
-    level.sectorCorners = patch.sectorCorners;
+    level.CornerTags::operator=(patch);
     level.sharpEnds = patch.sharpEnds;
     level.irregularVerts = patch.irregularVerts;
-    level.irregularCorners = patch.irregularCorners;
     level.numHexagonalSteps = patch.numHexagonalSteps;
 }
 

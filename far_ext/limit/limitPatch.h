@@ -23,7 +23,7 @@ namespace OpenSubdivHex::FarExt::internal {
 ///
 /// A non-manifold vertex that stays a corner in all levels *comes apart* into a vertex for each of its
 /// fans: what lies in one of them does not depend on the others, of which a pole may have thousands.
-struct LimitPatch {
+struct LimitPatch : CornerTags {
     using Index = Far::Index;
 
     std::vector<Index>
@@ -35,17 +35,15 @@ struct LimitPatch {
     std::vector<Index> faceVerts;     ///< of all faces in turn
     std::vector<Index> otherCorners;  ///< by corner, across the edge from it; or a BoundaryKind
     std::vector<float> edgeSharpness; ///< by corner, of the edge from it; the same on both sides
-    std::vector<float> diagonalSharpness;    ///< by face
-    std::vector<float> vertSharpness;        ///< by vertex
-    std::vector<Index> nonManifoldVerts;     ///< ascending
-    std::vector<Index> lineCorners;          ///< ascending; those whose edge has a line
-    std::vector<Index> lines;                ///< of these, in the order of their first corners
-    std::vector<SectorCorner> sectorCorners; ///< ascending
-    std::vector<SharpVertex> sharpVerts;     ///< ascending; of vertex 0 and its neighbours
+    std::vector<float> diagonalSharpness; ///< by face
+    std::vector<float> vertSharpness;     ///< by vertex
+    std::vector<Index> nonManifoldVerts;  ///< ascending
+    std::vector<Index> lineCorners;       ///< ascending; those whose edge has a line
+    std::vector<Index> lines;             ///< of these, in the order of their first corners
+    std::vector<SharpVertex> sharpVerts;  ///< ascending; of vertex 0 and its neighbours
     /// With Chaikin's rule, of the vertices further out where semi-sharp edges of these end.
     std::vector<SharpEnd> sharpEnds;
-    std::vector<IrregularCorner> irregularCorners; ///< ascending; as far as sectorCorners
-    std::vector<IrregularVertex> irregularVerts;   ///< ascending; of vertex 0 and its neighbours
+    std::vector<IrregularVertex> irregularVerts; ///< ascending; of vertex 0 and its neighbours
     /// As of the level, as long as it matters for the masks of this patch or of those that it makes.
     int numHexagonalSteps = 0;
 

@@ -84,11 +84,15 @@ std::vector<VertexMark> markFeatures(Level const &level) {
         return result;
     }
     result.resize(std::size_t(level.numVertices), VertexMark::Plain);
-    for (IrregularCorner const &irregular : level.irregularCorners) {
-        for (Index vert : level.GetFaceVertices(level.FindFaceOfCorner(irregular.corner))) {
-            result[std::size_t(vert)] = VertexMark::Irregular;
-        }
-    }
+    CornerTags::ForEachKind(
+        [&](auto const &tags) {
+            for (auto const &tag : tags) {
+                for (Index vert : level.GetFaceVertices(level.FindFaceOfCorner(tag.corner))) {
+                    result[std::size_t(vert)] = VertexMark::Irregular;
+                }
+            }
+        },
+        level);
     auto const mark = [&](Index vert) { result[std::size_t(vert)] = VertexMark::Feature; };
     auto const markEdge = [&](Index edge) {
         mark(level.edgeVerts[edge][0]);
@@ -168,35 +172,34 @@ bool PlainNeighborhoodGatherer::addFace(Index face, int local, PlainNeighborhood
         *key++ = char(number);
     }
     // Of a face's, all faces count as those of the ring.
-    addIrregularCorners(face, local, _neighbors.empty() || _faces.size() <= _neighbors.size(),
-                        result);
+    addCornerTags(face, local, _neighbors.empty() || _faces.size() <= _neighbors.size(), result);
     return size < kEndOfBytes && result.sources.size() < kEndOfBytes;
 }
 
 // Only corners at the neighbours of the vertex matter of the faces further out.
-void PlainNeighborhoodGatherer::addIrregularCorners(Index face, int local, bool isRing,
-                                                    PlainNeighborhood &result) const {
-    if (_level.irregularCorners.empty()) {
+void PlainNeighborhoodGatherer::addCornerTags(Index face, int local, bool isRing,
+                                              PlainNeighborhood &result) const {
+    if (!_level.HasCornerTags()) {
         return;
     }
     auto const numComplete = Index(1 + _neighbors.size());
     Index const first = _level.faceFirstCorner[face];
     int const size = _level.GetFaceSize(face);
-    char numAdded = 0;
-    for (IrregularCorner const &irregular : _level.GetIrregularCorners(first, first + size)) {
-        if (isRing || _numbers.Find(_level.faceVerts[irregular.corner]) < numComplete) {
-            char bytes[sizeof irregular.numFaces + sizeof irregular.weight];
-            std::memcpy(bytes, &irregular.numFaces, sizeof irregular.numFaces);
-            std::memcpy(bytes + sizeof irregular.numFaces, &irregular.weight,
-                        sizeof irregular.weight);
-            result.key.push_back(char((irregular.corner - first - local + size) % size));
-            result.key.push_back(char(irregular.kind));
-            result.key.push_back(char(irregular.facesAround));
-            result.key.append(bytes, sizeof bytes);
-            ++numAdded;
-        }
-    }
-    result.key.push_back(numAdded);
+    CornerTags::ForEachKind(
+        [&](auto const &tags) {
+            std::size_t const position = result.key.size();
+            result.key.push_back(0);
+            for (auto const &tag : FindCornerTags(tags, first, first + size)) {
+                if (isRing || _numbers.Find(_level.faceVerts[tag.corner]) < numComplete) {
+                    char bytes[sizeof tag];
+                    std::memcpy(bytes, &tag, sizeof tag);
+                    result.key.push_back(char((tag.corner - first - local + size) % size));
+                    result.key.append(bytes + sizeof tag.corner, sizeof tag - sizeof tag.corner);
+                    ++result.key[position];
+                }
+            }
+        },
+        _level);
 }
 
 // The faces around a neighbour, from its edge to the vertex on, but for the first and the last.

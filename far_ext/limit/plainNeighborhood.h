@@ -71,7 +71,7 @@ private:
     bool addOuterFaces(int neighbor, PlainNeighborhood &result);
     bool addFacesFrom(Index vert, int first, bool isKeyOfAll, PlainNeighborhood &result);
     bool addFacesAround(Index vert, PlainNeighborhood &result);
-    void addIrregularCorners(Index face, int local, bool isRing, PlainNeighborhood &result) const;
+    void addCornerTags(Index face, int local, bool isRing, PlainNeighborhood &result) const;
 
     Level const &_level;
     std::vector<VertexMark> const &_marks;

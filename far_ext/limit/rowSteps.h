@@ -50,8 +50,9 @@ void ForEachParentWeight(Refinement const &refinement, RefinementRules const &ru
     for (int i = 0; i < ofVertex.numSources; ++i) {
         function(ofVertex.sources[i], ofVertex.weights[i]);
     }
-    for (Index k = parent.vertFirstFace[pVert]; k < parent.vertFirstFace[pVert + 1]; ++k) {
-        addFVertex(parent.GetVertexCorner(k), ofVertex.faceWeight);
+    Index const firstFace = parent.vertFirstFace[pVert];
+    for (Index k = firstFace; k < parent.vertFirstFace[pVert + 1]; ++k) {
+        addFVertex(parent.GetVertexCorner(k), ofVertex.GetFaceWeight(k - firstFace));
     }
 }
 

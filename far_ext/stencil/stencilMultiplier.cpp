@@ -267,11 +267,9 @@ void StencilMultiplier<REAL>::fillVVertex(Index vVertex, Scratch &scratch) const
     _rows.ForEachSource(vVertex, rule, [&](Index source, double weight) {
         add(weight, parentWeights(source), _pSupports.OfVertices()[source]);
     });
-    if (rule.faceWeight > 0) {
-        _rows.ForEachVertexFace(pVert, [&](Index face, Index row) {
-            add(rule.faceWeight, _stencils.GetWeights(row), _supports.OfFaces()[face]);
-        });
-    }
+    _rows.ForEachFaceSource(pVert, rule, [&](Index face, Index row, double weight) {
+        add(weight, _stencils.GetWeights(row), _supports.OfFaces()[face]);
+    });
     Support const support = _supports.OfVVertex(vVertex, scratch.sources);
     REAL *const weights = _stencils.GetWeights(vVertex);
     sumOfSource.ForEach(support.begin(), support.size(), [weights](double &sum, int k) {

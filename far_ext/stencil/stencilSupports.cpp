@@ -212,11 +212,11 @@ void RowSupports::formVVertices(RefinementRows const &rows, RowSupports const &p
     auto const form = [&](Index vVertex, SupportUnion &sources, std::vector<Support> &supports) {
         Index const pVert = rows.GetVVertexParent(vVertex);
         VertexRule const rule = rows.GetVertexRule(pVert);
-        bool const hasFaces = rule.faceWeight > 0 && rows.HasVertexFaces(pVert);
+        bool const hasFaces = rule.HasFaces() && rows.HasVertexFaces(pVert);
         supports.clear();
         if (hasFaces) {
             supports.push_back(parents._ofVertices[pVert]);
-            rows.ForEachVertexFace(pVert, [&](Index face, Index) {
+            rows.ForEachFaceSource(pVert, rule, [&](Index face, Index, double) {
                 if (!(_ofFaces[face] == supports[0])) {
                     supports.push_back(_ofFaces[face]);
                 }
@@ -252,10 +252,9 @@ std::int64_t RowSupports::countLeastVVertexWeights(RefinementRows const &rows) c
     for (Index vVertex = 0; vVertex < rows.GetNumVVertices(); ++vVertex) {
         Index const pVert = rows.GetVVertexParent(vVertex);
         int most = 0;
-        if (rows.GetVertexRule(pVert).faceWeight > 0) {
-            rows.ForEachVertexFace(
-                pVert, [&](Index face, Index) { most = std::max(most, _ofFaces[face].size()); });
-        }
+        rows.ForEachFaceSource(pVert, rows.GetVertexRule(pVert), [&](Index face, Index, double) {
+            most = std::max(most, _ofFaces[face].size());
+        });
         count += most;
     }
     return count;

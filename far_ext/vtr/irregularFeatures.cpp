@@ -158,7 +158,7 @@ FacesAround IrregularFinder::findFacesAround(Index vert) const {
     Index const pVert = _refinement.GetVVertexParent(vert);
     if (parent.numHexagonalSteps > 0) {
         Index const corner = parent.GetVertexCorner(parent.vertFirstFace[pVert]);
-        auto const irregular = parent.GetIrregularCorners(corner, corner + 1);
+        auto const irregular = FindCornerTags(parent.irregularCorners, corner, corner + 1);
         bool const isKnown = !irregular.empty() && irregular[0].kind == IrregularCorner::kAtVertex;
         return isKnown ? irregular[0].facesAround : FacesAround::Others;
     }

@@ -7,6 +7,7 @@
 
 #include "far_ext/indexing.h"
 #include "far_ext/rules/mask.h"
+#include "far_ext/rules/quadPath.h"
 
 #include <opensubdiv/sdc/crease.h>
 #include <opensubdiv/vtr/types.h>
@@ -103,6 +104,47 @@ struct IrregularCorner {
     FacesAround facesAround; ///< of the irregular vertex; Others beside a quad
 };
 
+/// \brief A corner one of whose flags came from a quad, by a path that matters for masks.
+struct QuadCorner {
+    Far::Index corner;
+    QuadFlags flags;
+};
+
+/// \brief Tags of corners, each kind ascending by corner.
+///
+/// Each begins with its corner, and has no padding: behind the corner, equal bytes are equal tags.
+struct CornerTags {
+    std::vector<SectorCorner> sectorCorners; ///< of a corner by kind
+    // Those with FaceMask::Smooth; empty with other masks.
+    std::vector<IrregularCorner> irregularCorners; ///< one for a corner at most
+    std::vector<QuadCorner> quadCorners;           ///< one for a corner at most
+
+    bool HasCornerTags() const {
+        return !sectorCorners.empty() || !irregularCorners.empty() || !quadCorners.empty();
+    }
+    /// Calls function(tags of the kind ...) for each kind, of one thing or of several that have members of these names.
+    template <typename FUNCTION, typename... THINGS>
+    static void ForEachKind(FUNCTION const &function, THINGS &...things) {
+        function(things.sectorCorners...);
+        function(things.irregularCorners...);
+        function(things.quadCorners...);
+    }
+};
+
+/// The tags of corners \p begin to \p end - 1 among those of a kind, of few corners.
+template <typename TAG>
+OpenSubdiv::Vtr::ConstArray<TAG> FindCornerTags(std::vector<TAG> const &tags, Far::Index begin,
+                                                Far::Index end) {
+    auto const first =
+        std::lower_bound(tags.begin(), tags.end(), begin,
+                         [](TAG const &tag, Far::Index corner) { return tag.corner < corner; });
+    auto last = first;
+    while (last != tags.end() && last->corner < end) {
+        ++last;
+    }
+    return {tags.data() + (first - tags.begin()), int(last - first)};
+}
+
 /// \brief A boundary edge where an edge of level 0 came apart into one for each of its faces.  Edges
 /// of one line run along one curve.
 struct LineEdge {
@@ -141,7 +183,7 @@ using LocalIndexPair = std::array<Far::LocalIndex, 2>;
 ///  - the edges and faces of a vertex are in counter-clockwise order: face i lies between edges i
 ///    and i + 1; at a boundary vertex the first and the last edge are boundaries.  The fans of a
 ///    non-manifold vertex follow one another, each in this order.
-struct Level {
+struct Level : CornerTags {
     using Index = Far::Index;
     using LocalIndex = Far::LocalIndex;
 
@@ -220,7 +262,7 @@ struct Level {
         return numFreeBoundaries + numSharpBoundariesA + numSharpBoundariesB;
     }
     /// Whether any face of the level has another mask than that of its size.
-    bool HasFeatures() const { return HasSharpFaces() || !irregularCorners.empty(); }
+    bool HasFeatures() const { return HasSharpFaces() || HasCornerTags(); }
     /// Whether that is so because of something sharp.
     bool HasSharpFaces() const {
         return !halfFaces.empty() || !diagonalSharpness.empty() || !sectorCorners.empty();
@@ -252,15 +294,6 @@ struct Level {
             [](SharpVertex const &sharp, Index vert) { return sharp.vert < vert; });
         return found != sharpVerts.end() && found->vert == v ? &*found : nullptr;
     }
-    /// The entries of the corners from \p begin to \p end - 1.
-    OpenSubdiv::Vtr::ConstArray<SectorCorner> GetSectorCorners(Index begin, Index end) const {
-        auto const isBefore = [](SectorCorner const &sector, Index c) { return sector.corner < c; };
-        auto const first =
-            std::lower_bound(sectorCorners.begin(), sectorCorners.end(), begin, isBefore);
-        auto const last = std::lower_bound(first, sectorCorners.end(), end, isBefore);
-        return {sectorCorners.data() + (first - sectorCorners.begin()), int(last - first)};
-    }
-
     /// The irregular vertex \p v, null when it is none.
     IrregularVertex const *FindIrregularVertex(Index v) const {
         if (irregularVerts.empty() || v > irregularVerts.back().vert) {
@@ -271,20 +304,6 @@ struct Level {
             [](IrregularVertex const &irregular, Index vert) { return irregular.vert < vert; });
         return found->vert == v ? &*found : nullptr;
     }
-    /// The irregular corners from \p begin to \p end - 1.
-    OpenSubdiv::Vtr::ConstArray<IrregularCorner> GetIrregularCorners(Index begin, Index end) const {
-        auto const isBefore = [](IrregularCorner const &irregular, Index c) {
-            return irregular.corner < c;
-        };
-        auto const first =
-            std::lower_bound(irregularCorners.begin(), irregularCorners.end(), begin, isBefore);
-        auto last = first;
-        while (last != irregularCorners.end() && last->corner < end) {
-            ++last;
-        }
-        return {irregularCorners.data() + (first - irregularCorners.begin()), int(last - first)};
-    }
-
     /// Whether the level has no orders of edges around vertices of its own: where a hexagonal
     /// refinement made it without boundaries, vertices have as many edges as faces, and their
     /// places in these are known.
@@ -330,9 +349,8 @@ struct Level {
         function(level.nonManifoldEdges);
         function(level.lineEdges);
         function(level.sharpVerts);
-        function(level.sectorCorners);
         function(level.irregularVerts);
-        function(level.irregularCorners);
+        CornerTags::ForEachKind(function, level);
     }
 
     int depth = 0;
@@ -393,14 +411,11 @@ struct Level {
     std::vector<Index> nonManifoldEdges; ///< ascending; of level 0 alone
     std::vector<LineEdge> lineEdges;     ///< ascending; of levels with full topology
 
-    std::vector<SharpVertex> sharpVerts;     ///< ascending; all with a rule but RULE_SMOOTH
-    std::vector<SectorCorner> sectorCorners; ///< ascending; of a corner by kind
+    std::vector<SharpVertex> sharpVerts; ///< ascending; all with a rule but RULE_SMOOTH
     /// Only in patches; vertices ascend, and edges are in the order around them.
     std::vector<SharpEnd> sharpEnds;
 
-    // Components with masks of their own with FaceMask::Smooth; empty with other masks.
-    std::vector<IrregularVertex> irregularVerts;   ///< ascending
-    std::vector<IrregularCorner> irregularCorners; ///< ascending; one for a corner at most
+    std::vector<IrregularVertex> irregularVerts; ///< ascending; empty but with FaceMask::Smooth
 
     // Made when they are first asked for.
     Kept<RefinementRules> rules[2];            ///< by Interpolation; see GetRules()

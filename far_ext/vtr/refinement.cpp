@@ -2,6 +2,7 @@
 #include "refinement.h"
 
 #include "irregularFeatures.h"
+#include "quadFeatures.h"
 #include "sharpFeatures.h"
 
 namespace OpenSubdivHex::FarExt::internal {
@@ -38,6 +39,7 @@ void EndRefinement(TagOptions options, Refinement const &refinement, Level &chil
         child.sharpVerts.clear();
         child.sectorCorners.clear();
     }
+    FindQuadCorners(options.faceMask, refinement, child);
     FindIrregularFeatures(options.faceMask, refinement, child);
 }
 

@@ -61,7 +61,7 @@ RefinementRows::RefinementRows(Refinement const &refinement, HexSchemeOptions sc
             _partVertFirstFace[nextVert] = Index(_partVertFaces.size());
         }
         // None are there when the mask does not ask for them.
-        if (_rules->GetVertexRule(pVert).faceWeight > 0) {
+        if (_rules->GetVertexRule(pVert).HasFaces()) {
             for (Index k = parent.vertFirstFace[pVert]; k < parent.vertFirstFace[pVert + 1]; ++k) {
                 _partVertFaces.push_back(numberOfFace(parent.vertFaces[k]));
                 _partVertFaceLocals.push_back(parent.vertFaceLocals[k]);
@@ -146,7 +146,7 @@ RefinementRows::Part FindPart(Refinement const &refinement, HexSchemeOptions sch
         Index const pVert = refinement.GetVVertexParent(cVert);
         VertexRule const rule = rules->GetVertexRule(pVert);
         part.verts.insert(part.verts.end(), rule.sources, rule.sources + rule.numSources);
-        if (rule.faceWeight > 0) {
+        if (rule.HasFaces()) {
             for (Index face : parent.GetVertexFaces(pVert)) {
                 part.faces.push_back(face);
             }

@@ -69,6 +69,15 @@ public:
             function(_vertFaces[k], GetFaceFirstRow(_vertFaces[k]) + _vertFaceLocals[k]);
         }
     }
+    /// Calls function(face, row, weight) for the same where they have a part in the rule of the vertex.
+    template <typename FUNCTION>
+    void ForEachFaceSource(Index vert, VertexRule const &rule, FUNCTION function) const {
+        if (rule.HasFaces()) {
+            int i = 0;
+            ForEachVertexFace(
+                vert, [&](Index face, Index row) { function(face, row, rule.GetFaceWeight(i++)); });
+        }
+    }
     bool HasVertexFaces(Index vert) const {
         return !_truncation && _vertFirstFace[vert] < _vertFirstFace[vert + 1];
     }
@@ -92,7 +101,7 @@ public:
     FaceRule GetFaceRule(Index face) const { return _rules->GetFaceRule(faceId(face)); }
     VertexRule GetVertexRule(Index vert) const {
         if (_truncation) {
-            return {0, 0, {}, {}};
+            return {0, 0, {}, {}, nullptr};
         }
         return _part.verts.empty() ? _rules->GetVertexRule(vert) : partVertexRule(vert);
     }
@@ -170,11 +179,9 @@ void InterpolateVVertices(RefinementRows const &rows, Far::Index begin, Far::Ind
         rows.ForEachSource(vVertex, rule, [&](Far::Index vert, double weight) {
             point.AddWithWeight(src[vert], REAL(weight));
         });
-        if (rule.faceWeight > 0) {
-            rows.ForEachVertexFace(pVert, [&](Far::Index, Far::Index row) {
-                point.AddWithWeight(dst[row], REAL(rule.faceWeight));
-            });
-        }
+        rows.ForEachFaceSource(pVert, rule, [&](Far::Index, Far::Index row, double weight) {
+            point.AddWithWeight(dst[row], REAL(weight));
+        });
     }
 }
 

@@ -3,10 +3,15 @@
 
 #include "far_ext/rules/sharpMask.h"
 #include "indexSet.h"
+#include "parallel.h"
 
+#include <array>
 #include <cstddef>
 #include <cstring>
+#include <iterator>
+#include <map>
 #include <unordered_map>
+#include <utility>
 
 namespace OpenSubdivHex::FarExt::internal {
 
@@ -43,51 +48,69 @@ private:
     std::unordered_map<int, IrregularVertexMask> _masks;
 };
 
+// The tags of a face's corners among all of their kind.
+template <typename TAG>
+struct TagRange {
+    TAG const *first;
+    TAG const *behind;
+
+    TAG const *begin() const { return first; }
+    TAG const *end() const { return behind; }
+    bool empty() const { return first == behind; }
+};
+
+// What a tag is, in a face that begins at a corner: an even number of words.
+template <typename TAG>
+auto getWords(TAG tag, Index firstCorner) {
+    tag.corner -= firstCorner;
+    constexpr std::size_t kNumWords = sizeof tag / sizeof(std::uint32_t);
+    std::array<std::uint32_t, (kNumWords + 1) / 2 * 2> words = {};
+    std::memcpy(words.data(), &tag, sizeof tag);
+    return words;
+}
+
 // Key of the rule of a face: equal keys have equal rules.
 struct FaceTags {
     Index firstCorner;
     int size;
     bool isHalf;
     float diagonal; // share of the rule of a sharp diagonal
-    SectorCorner const *sectors;
-    SectorCorner const *endSectors;
-    IrregularCorner const *irregular;
-    IrregularCorner const *endIrregular;
+    TagRange<SectorCorner> sectorCorners;
+    TagRange<IrregularCorner> irregularCorners;
+    TagRange<QuadCorner> quadCorners;
 
     bool operator==(FaceTags const &other) const {
-        return isHalf == other.isHalf && size == other.size && diagonal == other.diagonal &&
-               std::equal(sectors, endSectors, other.sectors, other.endSectors,
-                          [&](SectorCorner const &x, SectorCorner const &y) {
-                              return x.corner - firstCorner == y.corner - other.firstCorner &&
-                                     x.weight == y.weight && x.sectorSize == y.sectorSize &&
-                                     x.kind == y.kind;
-                          }) &&
-               std::equal(irregular, endIrregular, other.irregular, other.endIrregular,
-                          [&](IrregularCorner const &x, IrregularCorner const &y) {
-                              constexpr std::size_t kFirst = offsetof(IrregularCorner, numFaces);
-                              return x.corner - firstCorner == y.corner - other.firstCorner &&
-                                     std::memcmp(&x.numFaces, &y.numFaces, sizeof x - kFirst) == 0;
-                          });
+        bool result = isHalf == other.isHalf && size == other.size && diagonal == other.diagonal;
+        CornerTags::ForEachKind(
+            [&](auto const &tags, auto const &otherTags) {
+                auto const isSame = [&](auto const &x, auto const &y) {
+                    return getWords(x, firstCorner) == getWords(y, other.firstCorner);
+                };
+                result = result && std::equal(tags.begin(), tags.end(), otherTags.begin(),
+                                              otherTags.end(), isSame);
+            },
+            *this, other);
+        return result;
     }
 
     struct Hash {
         std::size_t operator()(FaceTags const &tags) const {
             constexpr std::uint64_t kFactor = 0x9e3779b97f4a7c15u; // of Fibonacci hashing
             auto hash = std::uint64_t(tags.isHalf ? 0 : tags.size);
-            auto const add = [&hash](float weight, Index rest) {
-                std::uint64_t const high = getBits(weight);
-                hash = (hash ^ (high << 32 | std::uint32_t(rest))) * kFactor;
+            auto const add = [&hash](std::uint32_t high, std::uint32_t low) {
+                hash = (hash ^ (std::uint64_t(high) << 32 | low)) * kFactor;
             };
-            add(tags.diagonal, 0);
-            for (SectorCorner const *sector = tags.sectors; sector != tags.endSectors; ++sector) {
-                add(sector->weight, sector->corner - tags.firstCorner);
-                add(sector->sectorSize, sector->kind);
-            }
-            for (IrregularCorner const *corner = tags.irregular; corner != tags.endIrregular;
-                 ++corner) {
-                add(corner->weight, (corner->corner - tags.firstCorner) ^ corner->kind << 8 ^
-                                        int(corner->facesAround) << 12 ^ corner->numFaces << 16);
-            }
+            add(getBits(tags.diagonal), 0);
+            CornerTags::ForEachKind(
+                [&](auto const &ofKind) {
+                    for (auto const &tag : ofKind) {
+                        auto const words = getWords(tag, tags.firstCorner);
+                        for (std::size_t i = 0; i < words.size(); i += 2) {
+                            add(words[i], words[i + 1]);
+                        }
+                    }
+                },
+                tags);
             hash ^= hash >> 32;
             return std::size_t(hash);
         }
@@ -159,7 +182,7 @@ void RefinementRules::makeRuledVertices(bool hasIrregular) {
     };
     for (SharpVertex const &sharp : _level.sharpVerts) {
         addIrregularBefore(sharp.vert);
-        VertexRule rule = {sharp.faceWeight, 0, {}, {}};
+        VertexRule rule = {sharp.faceWeight, 0, {}, {}, nullptr};
         auto const add = [&rule](Index source, double weight) {
             rule.sources[rule.numSources] = source;
             rule.weights[rule.numSources++] = weight;
@@ -178,6 +201,108 @@ void RefinementRules::makeRuledVertices(bool hasIrregular) {
     addIrregularBefore(_level.numVertices);
 }
 
+// Where the paths of all corners of a vertex tell its weights, these have the share that its sharpness leaves.
+void RefinementRules::makeVertexWeights() {
+    if (_level.quadCorners.empty() || _level.numVertices == 0) {
+        return;
+    }
+    struct OfCorner {
+        float weight = -1; // with so few digits it is exact
+        float share = 0;
+    };
+    auto const find = [this](QuadCorner const &quad) -> OfCorner {
+        QuadRow const row = FindQuadRow(_level.numHexagonalSteps, quad.flags);
+        return {float(row.vertexWeight), quad.flags.GetShare()};
+    };
+    // In the constant levels few vertices have such weights, and have rules of their own.
+    bool const areFew = _level.numHexagonalSteps >= kNumStepsToConstantMasks;
+    std::vector<Index> few;
+    Buffer<OfCorner> ofCorners;
+    if (areFew) {
+        for (QuadCorner const &quad : _level.quadCorners) {
+            few.push_back(_level.faceVerts[quad.corner]);
+        }
+        SortUnique(few);
+    } else {
+        ofCorners.Resize(std::size_t(_level.numCorners));
+        std::fill_n(ofCorners.data(), ofCorners.size(), OfCorner());
+        ParallelFor(Index(_level.quadCorners.size()), [&](Index i) {
+            QuadCorner const &quad = _level.quadCorners[std::size_t(i)];
+            ofCorners[std::size_t(quad.corner)] = find(quad);
+        });
+        _weightsOfVerts.Resize(std::size_t(_level.numVertices));
+        std::fill_n(_weightsOfVerts.data(), _weightsOfVerts.size(), kPlain);
+    }
+    auto const findOf = [&](Index corner) {
+        if (!areFew) {
+            return ofCorners[std::size_t(corner)];
+        }
+        auto const quads = FindCornerTags(_level.quadCorners, corner, corner + 1);
+        return quads.empty() ? OfCorner() : find(quads[0]);
+    };
+    std::map<std::vector<double>, int> positions;
+    std::vector<double> weights;
+    std::vector<RuledVertex> ruled;
+    std::vector<int> positionsOfRuled;
+    Index const count = areFew ? Index(few.size()) : _level.numVertices;
+    for (Index i = 0; i < count; ++i) {
+        Index const vert = areFew ? few[std::size_t(i)] : i;
+        weights.assign(1, 1.0);
+        double share = 0; // all corners have the same
+        for (Index k = _level.vertFirstFace[vert]; k < _level.vertFirstFace[vert + 1]; ++k) {
+            OfCorner const ofCorner = findOf(_level.GetVertexCorner(k));
+            share = ofCorner.weight < 0 ? 0 : double(ofCorner.share);
+            if (share == 0) {
+                break;
+            }
+            weights.push_back(double(ofCorner.weight));
+            weights[0] -= weights.back();
+        }
+        if (share == 0) {
+            continue;
+        }
+        VertexRule rule = {0, 1, {vert}, {weights[0]}, nullptr};
+        if (share < 1) {
+            rule = GetVertexRule(vert);
+            for (double &weight : rule.weights) {
+                weight *= 1 - share;
+            }
+            double &ofVertex = rule.weights[rule.numSources - 1];
+            ofVertex += share * weights[0];
+            weights[0] = ofVertex;
+            for (std::size_t j = 1; j < weights.size(); ++j) {
+                weights[j] = rule.faceWeight + share * (weights[j] - rule.faceWeight);
+            }
+        }
+        auto const [found, isNew] = positions.try_emplace(weights, int(_vertexWeights.size()));
+        if (isNew) {
+            _vertexWeights.insert(_vertexWeights.end(), weights.begin(), weights.end());
+        }
+        if (areFew || rule.numSources > 1) {
+            ruled.push_back({vert, rule});
+            positionsOfRuled.push_back(found->second);
+        } else {
+            _weightsOfVerts[std::size_t(vert)] = found->second;
+        }
+    }
+    for (std::size_t i = 0; i < ruled.size(); ++i) {
+        VertexRule &rule = ruled[i].rule;
+        rule.faceWeights = _vertexWeights.data() + positionsOfRuled[i] + 1;
+        rule.faceWeight = rule.faceWeights[0];
+    }
+    // They take the place of those that vertices had.
+    std::vector<RuledVertex> before;
+    before.swap(_ruledVertices);
+    std::set_union(ruled.begin(), ruled.end(), before.begin(), before.end(),
+                   std::back_inserter(_ruledVertices),
+                   [](RuledVertex const &x, RuledVertex const &y) { return x.vert < y.vert; });
+    _ruledVertices.erase(std::remove_if(_ruledVertices.begin(), _ruledVertices.end(),
+                                        [this](RuledVertex const &vertex) {
+                                            return GetVertexWeights(vertex.vert) != kPlain;
+                                        }),
+                         _ruledVertices.end());
+}
+
 // Finds the faces that are not circulant, and makes a rule for each kind of them.
 class RefinementRules::DenseRuleMaker {
 public:
@@ -191,23 +316,27 @@ public:
     void Make() {
         std::vector<Index> const sharpFaces = findSharpFaces();
         auto nextSharp = sharpFaces.begin();
-        IrregularCorner const *const endCorners =
-            _level.irregularCorners.data() + _level.irregularCorners.size();
-        IrregularCorner const *nextCorner = _isVertex ? _level.irregularCorners.data() : endCorners;
         std::unordered_map<FaceTags, int, FaceTags::Hash> ruleOfTags;
         FaceTags before = {}; // of the last face: those that follow one another are mostly alike
         FaceTags tags = {};
-        tags.sectors = tags.endSectors = _level.sectorCorners.data();
-        tags.irregular = tags.endIrregular = _level.irregularCorners.data();
+        CornerTags::ForEachKind(
+            [](auto const &all, auto &read) {
+                read = {all.data(), all.data()};
+            },
+            _level, tags);
         int rule = kCirculant;
-        while (nextSharp != sharpFaces.end() || nextCorner != endCorners) {
-            Index face = nextSharp != sharpFaces.end() ? *nextSharp : _level.numFaces;
-            if (nextCorner != endCorners) {
-                face = std::min(face, _level.FindFaceOfCorner(nextCorner->corner));
+        for (;;) {
+            Index face = findNextFace(tags);
+            if (nextSharp != sharpFaces.end() && *nextSharp <= face) {
+                face = *nextSharp++;
             }
-            nextSharp += nextSharp != sharpFaces.end() && *nextSharp == face;
+            if (face == _level.numFaces) {
+                break;
+            }
             readTags(face, tags);
-            nextCorner = std::max(nextCorner, tags.endIrregular);
+            if (!hasOwnRows(tags)) {
+                continue;
+            }
             if (!(tags == before)) {
                 auto const [found, isNew] = ruleOfTags.try_emplace(tags, _rules.GetNumDenseRules());
                 rule = found->second;
@@ -226,7 +355,12 @@ public:
 private:
     std::vector<Index> findSharpFaces() const;
     void addFace(Index face, int rule);
-    void readTags(Index face, FaceTags &tags) const;
+    void readTags(Index face, FaceTags &tags);
+    QuadRow findQuadRow(QuadCorner const &quad) const {
+        return FindQuadRow(_level.numHexagonalSteps, quad.flags);
+    }
+    bool hasOwnRows(FaceTags const &tags) const;
+    Index findNextFace(FaceTags const &read) const;
     void addRule(FaceTags const &tags);
     void addRow(std::vector<double> const &row);
     static void addMask(double const (&mask)[kHexagon], int corner, bool isBackwards, double share,
@@ -253,9 +387,10 @@ private:
     QuadMask _quadMask;
     double _halfFaceWeights[kTrapezoid][kTrapezoid];
     Index _endDense = 0; // behind the last face with a dense rule
+    Index _endRead = 0;  // behind the last face whose tags were read
 };
 
-// Faces with other features than irregular corners, ascending.
+// Faces with a feature that is no tag of a corner, ascending.
 std::vector<Index> RefinementRules::DenseRuleMaker::findSharpFaces() const {
     std::vector<Index> faces(_level.halfFaces.begin(), _level.halfFaces.end());
     if (!_isVertex) {
@@ -265,9 +400,6 @@ std::vector<Index> RefinementRules::DenseRuleMaker::findSharpFaces() const {
         if (Sdc::Crease::IsSharp(_level.diagonalSharpness[face])) {
             faces.push_back(Index(face));
         }
-    }
-    for (SectorCorner const &sector : _level.sectorCorners) {
-        faces.push_back(_level.FindFaceOfCorner(sector.corner));
     }
     SortUnique(faces);
     return faces;
@@ -286,27 +418,56 @@ void RefinementRules::DenseRuleMaker::addFace(Index face, int rule) {
 }
 
 // Corners are read on from those of the faces before.
-void RefinementRules::DenseRuleMaker::readTags(Index face, FaceTags &tags) const {
+void RefinementRules::DenseRuleMaker::readTags(Index face, FaceTags &tags) {
     tags.firstCorner = _level.faceFirstCorner[face];
     tags.size = _level.GetFaceSize(face);
     tags.isHalf = _level.IsHalfFace(face);
     tags.diagonal = std::min(1.0f, _level.GetDiagonalSharpness(face));
-    auto const readOn = [end = tags.firstCorner + tags.size](auto const &all, auto const *&begin,
-                                                             auto const *&behind) {
-        begin = behind;
-        while (behind != all.data() + all.size() && behind->corner < end) {
-            ++behind;
-        }
-    };
-    if (_isVertex) {
-        readOn(_level.sectorCorners, tags.sectors, tags.endSectors);
-        readOn(_level.irregularCorners, tags.irregular, tags.endIrregular);
+    _endRead = face + 1;
+    if (!_isVertex) {
+        return;
     }
+    CornerTags::ForEachKind(
+        [end = tags.firstCorner + tags.size](auto const &all, auto &read) {
+            read.first = read.behind;
+            while (read.behind != all.data() + all.size() && read.behind->corner < end) {
+                ++read.behind;
+            }
+        },
+        _level, tags);
+}
+
+// The first face with tags of corners behind those that have been read, mostly the next one; else the end.
+Index RefinementRules::DenseRuleMaker::findNextFace(FaceTags const &read) const {
+    Index corner = _level.numCorners;
+    CornerTags::ForEachKind(
+        [&corner](auto const &all, auto const &ofKind) {
+            if (ofKind.behind != all.data() + all.size()) {
+                corner = std::min(corner, ofKind.behind->corner);
+            }
+        },
+        _level, read);
+    if (!_isVertex || corner == _level.numCorners) {
+        return _level.numFaces;
+    }
+    return corner < _level.faceFirstCorner[_endRead + 1] ? _endRead
+                                                         : _level.FindFaceOfCorner(corner);
 }
 
 void RefinementRules::DenseRuleMaker::addRow(std::vector<double> const &row) {
     _rules._rows.push_back(_rules._weights.size());
     _rules._weights.insert(_rules._weights.end(), row.begin(), row.end());
+}
+
+// Whether any corner does not follow the circulant mask: flags alone are no reason.
+bool RefinementRules::DenseRuleMaker::hasOwnRows(FaceTags const &tags) const {
+    return tags.isHalf || tags.diagonal > 0 || !tags.sectorCorners.empty() ||
+           !tags.irregularCorners.empty() ||
+           (tags.size == kHexagon && std::any_of(tags.quadCorners.begin(), tags.quadCorners.end(),
+                                                 [this](QuadCorner const &quad) {
+                                                     return quad.flags.GetShare() > 0 &&
+                                                            findQuadRow(quad).mask != nullptr;
+                                                 }));
 }
 
 // Corners of a face with nothing of their own have the rows of its circulant rule.
@@ -315,24 +476,32 @@ void RefinementRules::DenseRuleMaker::addRule(FaceTags const &tags) {
     _rules._denseRules.push_back({size, _rules._rows.size()});
     constexpr int kHalfFace[kTrapezoid] = {0, 1, 2, 3};
     double const sharp = tags.isHalf ? 1 : tags.diagonal;
-    SectorCorner const *sector = tags.sectors;
-    IrregularCorner const *irregular = tags.irregular;
+    SectorCorner const *sector = tags.sectorCorners.begin();
+    IrregularCorner const *irregular = tags.irregularCorners.begin();
+    QuadCorner const *quad = tags.quadCorners.begin();
     for (int i = 0; i < size; ++i) {
         Index const corner = tags.firstCorner + i;
         double towards = 0;
         bool hasOneFace = false;
         SectorCorner const *const sectors = sector;
-        for (; sector != tags.endSectors && sector->corner == corner; ++sector) {
+        for (; sector != tags.sectorCorners.end() && sector->corner == corner; ++sector) {
             if (sector->kind == SectorCorner::kInWide) {
                 towards +=
                     sector->weight * (1 - ComputeSectorShrink(_faceMask, sector->sectorSize));
             }
             hasOneFace = hasOneFace || sector->kind != SectorCorner::kInWide;
         }
-        bool const isIrregular = irregular != tags.endIrregular && irregular->corner == corner;
+        IrregularCorner const *const ofIrregular =
+            irregular != tags.irregularCorners.end() && irregular->corner == corner ? irregular++
+                                                                                    : nullptr;
+        QuadCorner const *const ofQuad =
+            quad != tags.quadCorners.end() && quad->corner == corner ? quad++ : nullptr;
+        QuadRow const byPath =
+            ofQuad && size == kHexagon ? findQuadRow(*ofQuad) : QuadRow{nullptr, false, -1};
+        float const ofPath = byPath.mask ? ofQuad->flags.GetShare() : 0;
         std::size_t const circulantRow =
             _rules._circulants[std::size_t(size)] + std::size_t(size - i);
-        if (sharp == 0 && towards == 0 && !hasOneFace && !isIrregular) {
+        if (sharp == 0 && towards == 0 && !hasOneFace && !ofIrregular && ofPath == 0) {
             _rules._rows.push_back(circulantRow);
             continue;
         }
@@ -357,8 +526,11 @@ void RefinementRules::DenseRuleMaker::addRule(FaceTags const &tags) {
         } else if (hasOneFace) {
             addOneFace({sectors, sector}, i, row);
         }
-        if (isIrregular) {
-            addIrregularWeights(*irregular++, i, row);
+        if (ofIrregular && ofPath < 1) {
+            addIrregularWeights(*ofIrregular, i, row);
+        }
+        if (ofPath > 0) {
+            addMask(*byPath.mask, i, byPath.isBackwards, ofPath, row);
         }
         addRow(row);
     }
@@ -438,6 +610,9 @@ RefinementRules::RefinementRules(Level const &parent, HexSchemeOptions schemeOpt
     makeCirculantRules();
     if (interpolation == Interpolation::Vertex) {
         makeRuledVertices(isHexagonal);
+        if (isHexagonal) {
+            makeVertexWeights();
+        }
     }
     if (isHexagonal && parent.HasFeatures()) {
         DenseRuleMaker(*this, _faceMask).Make();

@@ -35,24 +35,31 @@ private:
     std::size_t const *_rows; // of a dense rule: where each row begins in the weights of all rules
 };
 
-/// \brief How a V-vertex is made: V' = the sum of weights[i] sources[i], i < numSources, and faceWeight
-/// times the sum of the F-vertices around it.
+/// \brief How a V-vertex is made: V' = the sum of weights[i] sources[i], i < numSources, and that of the F-vertices
+/// around it, each with GetFaceWeight().
 ///
 /// The last source is its parent.  Neighbors come first, so that it does not matter for the sum which of
 /// them is left and right.
 struct VertexRule {
-    double faceWeight;
+    double
+        faceWeight; ///< of the F-vertex in each face; in each but for faceWeights, where these are
     int numSources;
     Far::Index sources[3];
     double weights[3];
+    /// Where faces differ, their weights, as Level::vertFaces has the faces; else null.  All are 0 or none.
+    double const *faceWeights;
+
+    /// Of the F-vertex in face \p i around the vertex.
+    double GetFaceWeight(int i) const { return faceWeights ? faceWeights[i] : faceWeight; }
+    bool HasFaces() const { return faceWeight > 0; }
 };
 
 /// \brief The rules of one refinement, as data: with which weights the faces and vertices of a level make
 /// F-vertices and V-vertices.  RefinementRows adds the components that are made.
 ///
 /// Tags of the level and the options of the scheme are turned into weights here, and nowhere else.  Faces
-/// have the circulant rule of their size or a dense one, in runs, and vertices the rule of one source of their
-/// number of faces but for those of GetRuledVertices().
+/// have the circulant rule of their size or a dense one, in runs.  Vertices have the rule of one source of their
+/// number of faces but for those of GetRuledVertices(), and for those with weights by face.
 class OPENSUBDIVHEX_API RefinementRules {
 public:
     using Index = Far::Index;
@@ -122,9 +129,25 @@ public:
     /// @name Vertices
     /// @{
     VertexRule GetVertexRule(Index vert) const {
-        RuledVertex const *const ruled = findRuled(vert);
-        return ruled ? ruled->rule : plainRule(vert, _level.GetNumVertexFaces(vert));
+        if (RuledVertex const *const ruled = findRuled(vert)) {
+            return ruled->rule;
+        }
+        int const weights = GetVertexWeights(vert);
+        return weights == kPlain ? plainRule(vert, _level.GetNumVertexFaces(vert))
+                                 : weightedRule(vert, weights);
     }
+    /// @name Vertices with weights by face
+    /// Of those that have no rule of their own: the weight of the vertex, and behind it those of the F-vertices around
+    /// it.  Vertices with equal weights share these.
+    /// @{
+    static constexpr int kPlain = -1;
+    /// The position of those of a vertex in GetAllVertexWeights(), or kPlain.
+    int GetVertexWeights(Index vert) const {
+        return _weightsOfVerts.empty() ? kPlain : _weightsOfVerts[std::size_t(vert)];
+    }
+    std::vector<double> const &GetAllVertexWeights() const { return _vertexWeights; }
+    bool HasVertexWeights() const { return !_weightsOfVerts.empty(); }
+    /// @}
     /// The rule of vertices with \p numFaces faces that have none of their own.
     VertexVertexMask GetPlainVertexMask(int numFaces) const {
         return numFaces < kNumKept ? _plainVertexMasks[numFaces]
@@ -145,7 +168,11 @@ private:
 
     VertexRule plainRule(Index vert, int numFaces) const {
         VertexVertexMask const mask = GetPlainVertexMask(numFaces);
-        return {mask.faceWeight, 1, {vert}, {mask.vertexWeight}};
+        return {mask.faceWeight, 1, {vert}, {mask.vertexWeight}, nullptr};
+    }
+    VertexRule weightedRule(Index vert, int position) const {
+        double const *const weights = _vertexWeights.data() + position;
+        return {weights[1], 1, {vert}, {weights[0]}, weights + 1};
     }
     RuledVertex const *findRuled(Index vert) const {
         if (_ruledVertices.empty() || vert > _ruledVertices.back().vert) {
@@ -158,6 +185,7 @@ private:
     }
     void makeCirculantRules();
     void endFaceRuns();
+    void makeVertexWeights();
     void makeRuledVertices(bool hasIrregular);
 
     Level const &_level;
@@ -166,6 +194,8 @@ private:
     Interpolation _interpolation;
     VertexVertexMask _plainVertexMasks[kNumKept]; ///< by number of faces
     std::vector<RuledVertex> _ruledVertices;
+    Buffer<int> _weightsOfVerts;        ///< by vertex; empty where all are plain
+    std::vector<double> _vertexWeights; ///< each set once
 
     std::vector<double> _weights;         ///< of all rows
     std::vector<std::size_t> _circulants; ///< by face size, position in _weights

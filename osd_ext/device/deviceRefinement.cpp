@@ -4,6 +4,7 @@
 #include "far_ext/vtr/report.h"
 #include "osd_ext/refinement/preparedRefinement.h"
 
+#include "far_ext/vtr/indexSet.h"
 #include "far_ext/vtr/parallel.h"
 #include "far_ext/vtr/runs.h"
 #include "far_ext/vtr/truncationMask.h"
@@ -204,6 +205,7 @@ private:
     Index _firstOlderVertex;                   // ... and of the level before that
     std::vector<std::uint32_t> _plainWeights;  // by size, twice in a row
     std::vector<std::uint32_t> _vertexWeights; // of plain vertices, by their number of faces
+    std::vector<std::uint32_t> _weightsByFace; // by position in those of the rules
     std::vector<Index> _listedFaces;           // F-faces
     std::vector<std::uint32_t> _firstIndices;  // of those
     std::vector<Index> _truncationSources;
@@ -327,6 +329,14 @@ void Maker::planVertices() {
     for (RefinementRules::RuledVertex const &vertex : _rules.GetRuledVertices()) {
         ruled.push_back(vertex.vert);
     }
+    for (Index vert = 0; vert < _level.numVertices && _rules.HasVertexWeights(); ++vert) {
+        if (_rules.GetVertexWeights(vert) != RefinementRules::kPlain) {
+            ruled.push_back(vert);
+        }
+    }
+    if (_rules.HasVertexWeights()) {
+        FarExt::internal::SortUnique(ruled);
+    }
     std::vector<Range> ranges;
     ForEachRun(
         0, _level.numVertices, ruled,
@@ -376,13 +386,23 @@ void Maker::listPlainVertex(Index vert) {
 
 void Maker::listVertex(Index vert) {
     VertexRule const rule = _rules.GetVertexRule(vert);
-    int const numCorners = rule.faceWeight != 0 ? _level.GetNumVertexFaces(vert) : 0;
+    int const numCorners = rule.HasFaces() ? _level.GetNumVertexFaces(vert) : 0;
     std::uint32_t const firstIndex =
         takeIndices(std::size_t(rule.numSources) + std::size_t(numCorners));
-    std::uint32_t const firstWeight = addWeights(rule.weights, rule.numSources);
-    addWeights(&rule.faceWeight, 1);
+    auto const addAll = [&] {
+        std::uint32_t const firstWeight = addWeights(rule.weights, rule.numSources);
+        addWeights(rule.faceWeights ? rule.faceWeights : &rule.faceWeight,
+                   rule.faceWeights ? numCorners : 1);
+        return firstWeight;
+    };
+    // Those with weights by face share these.
+    std::uint32_t const firstWeight =
+        rule.faceWeights ? find(_weightsByFace,
+                                int(rule.faceWeights - _rules.GetAllVertexWeights().data()), addAll)
+                         : addAll();
+    std::uint32_t const flag = rule.faceWeights ? DeviceVertex::kEachHasAWeight : 0;
     _result.vertices.push_back({std::uint32_t(_refinement.GetVertexChildVertex(vert)),
-                                std::uint32_t(rule.numSources), std::uint32_t(numCorners),
+                                std::uint32_t(rule.numSources), std::uint32_t(numCorners) | flag,
                                 firstIndex, firstWeight});
 }
 
@@ -437,7 +457,7 @@ void Maker::Fill(std::int32_t *indices) const {
             next = std::copy_n(rule.sources, rule.numSources, next);
         }
         Index const firstFace = _level.vertFirstFace[std::size_t(vert)];
-        for (std::uint32_t i = 0; i < vertex.numCorners; ++i) {
+        for (std::uint32_t i = 0; i < vertex.GetNumCorners(); ++i) {
             *next++ = _level.GetVertexCorner(firstFace + Index(i));
         }
     }

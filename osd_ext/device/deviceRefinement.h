@@ -51,13 +51,18 @@ struct DeviceCorner {
 
 /// \brief Any V-vertex: from its first index on it has sources, each with a weight, and then corners,
 /// whose F-vertices are summed up and multiplied by the weight behind those.  A vertex without sources
-/// is plain: with the sum of its F-vertices, it is multiplied by the only weight.
+/// is plain: with the sum of its F-vertices, it is multiplied by the only weight.  Of one whose numCorners has
+/// kEachHasAWeight, the F-vertex of each corner has a weight of its own, behind those of the sources.
 struct DeviceVertex {
+    static constexpr std::uint32_t kEachHasAWeight = 1U << 31;
+
     std::uint32_t child;
     std::uint32_t numSources;
     std::uint32_t numCorners;
     std::uint32_t firstIndex;
     std::uint32_t firstWeight;
+
+    std::uint32_t GetNumCorners() const { return numCorners & ~kEachHasAWeight; }
 };
 
 /// \brief A refinement as a device evaluates it, with what the numbering does not give.

@@ -198,6 +198,8 @@ FUNCTION void makeListedVVertex(uint i) {
     uint child = indices[place];
     uint numSources = indices[place + PLACE(1)];
     uint numCorners = indices[place + PLACE(2)];
+    bool eachHasAWeight = numCorners >= 0x80000000u;
+    numCorners = numCorners & 0x7fffffffu;
     PLACE next = PLACE(indices[place + PLACE(3)]);
     PLACE first = PLACE(indices[place + PLACE(4)]);
     Element e = getZero();
@@ -210,6 +212,12 @@ FUNCTION void makeListedVVertex(uint i) {
             e = addElements(e, getFVertex(indices[next + PLACE(j)]));
         }
         e = scaleElement(weights[first], e);
+    } else if (eachHasAWeight) {
+        next = next + PLACE(numSources);
+        first = first + PLACE(numSources);
+        for (uint j = 0u; j < numCorners; ++j) {
+            addTo(e, weights[first + PLACE(j)], getFVertex(indices[next + PLACE(j)]));
+        }
     } else if (numCorners > 0u) {
         next = next + PLACE(numSources);
         Element sum = getFVertex(indices[next]);

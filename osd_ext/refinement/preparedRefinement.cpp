@@ -159,12 +159,16 @@ void makeFaces(RefinementRules const &rules, PreparedRefinement &prepared) {
     });
 }
 
-WeightedVertex makeWeightedVertex(VertexRule const &rule, Refinement const &refinement,
-                                  Index vert) {
+WeightedVertex makeWeightedVertex(VertexRule const &rule, RefinementRules const &rules,
+                                  Refinement const &refinement, Index vert) {
+    int const firstFaceWeight = rule.faceWeights
+                                    ? int(rule.faceWeights - rules.GetAllVertexWeights().data())
+                                    : WeightedVertex::kEqual;
     WeightedVertex vertex = {vert,
                              refinement.GetVertexChildVertex(vert),
                              float(rule.weights[rule.numSources - 1]),
                              float(rule.faceWeight),
+                             firstFaceWeight,
                              {vert, vert},
                              {0, 0}};
     for (int i = 0; i + 1 < rule.numSources; ++i) {
@@ -181,6 +185,8 @@ void makeVertices(RefinementRules const &rules, Refinement const &refinement,
     bool const arePlain = // those that are not weighted; else there are no others
         prepared.numVVertices == parent.numVertices;
     std::vector<Index> const weighted = findWeightedVertices(rules, refinement);
+    std::vector<double> const &weights = rules.GetAllVertexWeights();
+    prepared.vertexWeights.assign(weights.begin(), weights.end());
     auto nextRuled = rules.GetRuledVertices().begin();
     auto const endRuled = rules.GetRuledVertices().end();
     forEachBatch(parent.numVertices, kVertexBatch, [&](Index batchBegin, Index batchEnd) {
@@ -196,8 +202,9 @@ void makeVertices(RefinementRules const &rules, Refinement const &refinement,
                     ++nextRuled;
                 }
                 bool const isRuled = nextRuled != endRuled && nextRuled->vert == vert;
-                prepared.weightedVertices.items.push_back(makeWeightedVertex(
-                    isRuled ? nextRuled->rule : rules.GetVertexRule(vert), refinement, vert));
+                prepared.weightedVertices.items.push_back(
+                    makeWeightedVertex(isRuled ? nextRuled->rule : rules.GetVertexRule(vert), rules,
+                                       refinement, vert));
             });
         prepared.vertexRuns.EndGroup();
         prepared.weightedVertices.EndGroup();

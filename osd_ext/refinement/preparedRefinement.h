@@ -69,6 +69,9 @@ struct WeightedVertex {
     Far::Index child; ///< in the level that is made
     float vertexWeight;
     float faceWeight;
+    /// Of the F-vertices around it, in vertexWeights; where kEqual, all have faceWeight.
+    int firstFaceWeight;
+    static constexpr int kEqual = -1;
     Far::Index neighbors[2];
     float neighborWeights[2]; ///< 0 where there is none
 };
@@ -109,13 +112,15 @@ struct PreparedRefinement {
     Groups<WeightedFace> weightedFaces;
     /// For a truncation, all vertices that it makes.
     Groups<ListedVertex> listedVertices;
-    Groups<IndexRun> vertexRuns; ///< plain vertices of the parent
+    Groups<IndexRun> vertexRuns; ///< plain vertices of the parent, and those with weights by face
     Groups<WeightedVertex> weightedVertices;
 
     Far::Index numVVertices = 0; ///< F-vertices follow in the child
     FarExt::internal::Level const *parent = nullptr;
 
-    std::vector<float> faceWeights;        ///< of weighted faces, those of a rule once
+    std::vector<float> faceWeights; ///< of weighted faces, those of a rule once
+    /// As RefinementRules::GetAllVertexWeights(): of vertices with weights by face.
+    std::vector<float> vertexWeights;
     std::vector<DenseFaceMask> denseMasks; ///< of hexagons, by the number of their rule
 
     // Of listed vertices.

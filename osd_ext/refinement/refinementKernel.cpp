@@ -127,7 +127,56 @@ void refinePlainFaces(RefinementTask const &task, IndexRun run) {
     }
 }
 
-// Nearly all vertices have three faces.  What is read besides is of faces that are done, or of the level before.
+// A vertex and the F-vertices at the corners around it.  Nearly all have three.
+template <class ACCESS, class POINT>
+POINT sumOfPlainVertex(POINT sum, Elements<float const> const &fVertices, Index const *corners,
+                       int numFaces) {
+    if (numFaces == kFVertexFaces) {
+        return sum + (ACCESS::Load(fVertices, corners[0]) +
+                      (ACCESS::Load(fVertices, corners[1]) + ACCESS::Load(fVertices, corners[2])));
+    }
+    for (int i = 0; i < numFaces; ++i) {
+        sum = sum + ACCESS::Load(fVertices, corners[i]);
+    }
+    return sum;
+}
+
+// Vertices of a run in which some have weights by face.
+template <class ACCESS>
+void refineMixedVertexRun(RefinementTask const &task, IndexRun run) {
+    Elements<float const> const src = task.src;
+    Elements<float const> const fVertices = asConst(task.FVertices());
+    PreparedRefinement const &refinement = *task.refinement;
+    float const *const inverses = refinement.masks.verticesInverse.data();
+    Index const *const firstFaces = refinement.parent->vertFirstFace.data();
+    Index const *corners = refinement.vertCorners.data() + firstFaces[run.begin];
+    for (Index vert = run.begin; vert < run.end; ++vert) {
+        int const numFaces = firstFaces[vert + 1] - firstFaces[vert];
+        int const position = refinement.rules->GetVertexWeights(vert);
+        auto sum = ACCESS::Load(src, vert);
+        if (position == RefinementRules::kPlain) {
+            sum = sumOfPlainVertex<ACCESS>(sum, fVertices, corners, numFaces);
+            sum = Spread(inverses[numFaces]) * sum;
+        } else {
+            float const *const weights = refinement.vertexWeights.data() + position;
+            auto const load = [&](int i) {
+                return Spread(weights[i + 1]) * ACCESS::Load(fVertices, corners[i]);
+            };
+            sum = Spread(weights[0]) * sum;
+            if (numFaces == kFVertexFaces) {
+                sum = sum + (load(0) + (load(1) + load(2)));
+            } else {
+                for (int i = 0; i < numFaces; ++i) {
+                    sum = sum + load(i);
+                }
+            }
+        }
+        corners += numFaces;
+        ACCESS::StoreExactly(task.dst, vert, sum);
+    }
+}
+
+// What is read besides is of faces that are done, or of the level before.
 template <class ACCESS>
 void refineVertexRun(RefinementTask const &task, IndexRun run) {
     Elements<float const> const src = task.src;
@@ -138,22 +187,17 @@ void refineVertexRun(RefinementTask const &task, IndexRun run) {
         }
         return;
     }
+    if (task.refinement->rules->HasVertexWeights()) {
+        return refineMixedVertexRun<ACCESS>(task, run);
+    }
     Elements<float const> const fVertices = asConst(task.FVertices());
     float const *const inverses = task.refinement->masks.verticesInverse.data();
     Index const *const firstFaces = task.refinement->parent->vertFirstFace.data();
     Index const *corners = task.refinement->vertCorners.data() + firstFaces[run.begin];
     for (Index vert = run.begin; vert < run.end; ++vert) {
         int const numFaces = firstFaces[vert + 1] - firstFaces[vert];
-        auto sum = ACCESS::Load(src, vert);
-        if (numFaces == kFVertexFaces) {
-            sum =
-                sum + (ACCESS::Load(fVertices, corners[0]) +
-                       (ACCESS::Load(fVertices, corners[1]) + ACCESS::Load(fVertices, corners[2])));
-        } else {
-            for (int i = 0; i < numFaces; ++i) {
-                sum = sum + ACCESS::Load(fVertices, corners[i]);
-            }
-        }
+        auto const sum =
+            sumOfPlainVertex<ACCESS>(ACCESS::Load(src, vert), fVertices, corners, numFaces);
         corners += numFaces;
         auto const point = Spread(inverses[numFaces]) * sum;
         ACCESS::StoreExactly(dst, vert, point);
@@ -175,11 +219,21 @@ void refineWeightedVertex(RefinementTask const &task, WeightedVertex const &vert
     Index const *const firstFace = parent.vertFirstFace.data() + vertex.vert;
     if (vertex.faceWeight != 0 && firstFace[0] < firstFace[1]) {
         Elements<float const> const fVertices = asConst(task.FVertices());
-        auto sum = ACCESS::LoadExactly(fVertices, parent.GetVertexCorner(firstFace[0]));
-        for (Index k = firstFace[0] + 1; k < firstFace[1]; ++k) {
-            sum = sum + ACCESS::LoadExactly(fVertices, parent.GetVertexCorner(k));
+        auto const load = [&](Index k) {
+            return ACCESS::LoadExactly(fVertices, parent.GetVertexCorner(k));
+        };
+        if (vertex.firstFaceWeight != WeightedVertex::kEqual) {
+            float const *weight = task.refinement->vertexWeights.data() + vertex.firstFaceWeight;
+            for (Index k = firstFace[0]; k < firstFace[1]; ++k) {
+                point = point + Spread(*weight++) * load(k);
+            }
+        } else {
+            auto sum = load(firstFace[0]);
+            for (Index k = firstFace[0] + 1; k < firstFace[1]; ++k) {
+                sum = sum + load(k);
+            }
+            point = point + Spread(vertex.faceWeight) * sum;
         }
-        point = point + Spread(vertex.faceWeight) * sum;
     }
     ACCESS::StoreExactly(task.dst, vertex.child, point);
 }

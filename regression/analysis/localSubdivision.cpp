@@ -197,7 +197,10 @@ LocalSubdivision makeLocalSubdivision(LEVEL const &level, MeshCenter center, LEV
 LocalSubdivision MakeLocalSubdivision(FarExt::HexSchemeOptions const &schemeOptions,
                                       CenterKind baseKind, int order) {
     // Both have other irregularities, at a distance that grows by 2, or by sqrt(3) in tri-hex.
-    int const pDepth = schemeOptions.schemeType == FarExt::SchemeType::TriHex ? 6 : 4;
+    // Masks do not change any more behind four hexagonal steps.
+    int const pDepth = schemeOptions.schemeType == FarExt::SchemeType::TriHex ? 6
+                       : schemeOptions.firstStep == FarExt::FirstStep::Same   ? 4
+                                                                              : 5;
     Shape const shape = baseKind == CenterKind::Vertex ? MakeBipyramid(order) : MakePrism(order);
     auto const refiner = FarExt::TopologyRefinerFactory::Create(ShapeDescriptor(shape).Get(),
                                                                 Sdc::Options(), {schemeOptions});

@@ -284,7 +284,8 @@ private:
             auto const getWeights = [&](int face, int i) -> double const * {
                 int const corner = parent.faceFirstCorner[std::size_t(face)] + i;
                 int const size = parent.GetFaceSize(face);
-                auto const irregular = parent.GetIrregularCorners(corner, corner + 1);
+                auto const irregular =
+                    FarExt::internal::FindCornerTags(parent.irregularCorners, corner, corner + 1);
                 CornerWeights mask = {nullptr, false};
                 if (ofLevel && size == kQuad && !parent.IsHalfFace(face)) {
                     mask.weights = ofLevel->inQuad;

@@ -40,9 +40,10 @@ void InterpolateMasked(FarExt::internal::Refinement const &refinement,
         for (int i = 0; i < weights.numSources; ++i) {
             value.AddWithWeight(src[weights.sources[i]], weights.weights[i]);
         }
-        for (int k = parent.vertFirstFace[vert]; k < parent.vertFirstFace[vert + 1]; ++k) {
+        int const firstFace = parent.vertFirstFace[vert];
+        for (int k = firstFace; k < parent.vertFirstFace[vert + 1]; ++k) {
             value.AddWithWeight(dst[refinement.GetCornerChildVertex(parent.GetVertexCorner(k))],
-                                weights.faceWeight);
+                                weights.GetFaceWeight(k - firstFace));
         }
     }
 }

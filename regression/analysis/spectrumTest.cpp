@@ -324,7 +324,7 @@ TEST(Spectrum, TriHexFirstBoundsCurvature) {
 // So after a truncation, where a vertex becomes a face with as many sides.
 TEST(Spectrum, TruncateFirstBoundsCurvature) {
     HexSchemeOptions const scheme{FaceMask::Smooth, SchemeType::Hexagonal, FirstStep::Truncate};
-    for (int order = 3; order <= 64; ++order) {
+    for (int order : {3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 16, 32, 64}) {
         LocalSubdivision const center = MakeLocalSubdivision(scheme, CenterKind::Vertex, order);
         EXPECT_EQ(center.centerKind, CenterKind::Face);
         EXPECT_EQ(center.order, order);

@@ -175,7 +175,7 @@ TEST(AdaptivePatches, KeepTheirTolerance) {
     Shape const &shape = GetShape("cube");
     ReferenceValues const positions = GetPositions(shape);
     double const size = GetSize(positions);
-    int const maxLevel = 4;
+    int const maxLevel = 5;
     auto const refiner = CreateRefiner(shape, ReferenceMask::Smooth, maxLevel + 2, makeOptions());
     std::vector<float> control;
     for (Eigen::Index i = 0; i < positions.rows(); ++i) {

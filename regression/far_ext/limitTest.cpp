@@ -6,6 +6,7 @@
 #include "valueLevels.h"
 
 #include "far_ext/executor.h"
+#include "far_ext/rules/mask.h"
 #include "far_ext/stencilTableFactory.h"
 #include "regression/reference/largestValue.h"
 #include "regression/shapes/featureShapes.h"
@@ -132,13 +133,14 @@ TEST(Limit, MasksOfVVerticesAmongHexagons) {
           Expected{"octahedron", ReferenceMask::Smooth, .391345, .126877, .012643, 0},
           Expected{"icosahedron", ReferenceMask::Smooth, .457419, .101238, .003639, 0}}) {
         SCOPED_TRACE(testing::Message() << expected.shape << " " << ToString(expected.mask));
-        auto const refiner = CreateRefiner(GetShape(expected.shape), expected.mask, 3);
+        int const depth = FarExt::kNumStepsToConstantMasks;
+        auto const refiner = CreateRefiner(GetShape(expected.shape), expected.mask, depth);
         LimitStencilTableFactoryReal<double>::Options options;
-        options.level = 3;
+        options.level = depth;
         options.factorizeIntermediateLevels = false;
         auto const table = LimitStencilTableFactoryReal<double>::Create(*refiner, options);
         ASSERT_TRUE(table);
-        TopologyLevel const &level = refiner->GetLevel(3);
+        TopologyLevel const &level = refiner->GetLevel(depth);
         std::vector<double> weights(level.GetNumVertices(), 0.0);
         Far::LimitStencilReal<double> const stencil = table->GetLimitStencil(0);
         for (int k = 0; k < stencil.GetSize(); ++k) {
@@ -253,8 +255,8 @@ TEST(Limit, IsTheSameFromEveryLevel) {
     });
 }
 
-// Vertices come to their limit by a factor near 4 in each level, as the square of the edges; with
-// Average and on borders by less, 2.39 at least in these.
+// Vertices come to their limit by a factor near 4 in each level, as the square of the edges; with Average and on borders
+// by less, 2.39 at least in these; with Smooth by 2.14 at level 3 of quads, whose masks change there.
 TEST(Limit, IsWhatRefinementTendsTo) {
     for (char const *name : {"cube", "icosahedron", "pyramid5", "quadGrid", "mixedPatch"}) {
         for (auto boundary : kBoundaries) {
@@ -277,7 +279,7 @@ TEST(Limit, IsWhatRefinementTendsTo) {
                     }
                     error = std::sqrt(error);
                     if (level > 2) {
-                        EXPECT_LT(error, previous / 2.3) << "level " << level;
+                        EXPECT_LT(error, previous / (level == 3 ? 2.1 : 2.3)) << "level " << level;
                     }
                     previous = error;
                 }

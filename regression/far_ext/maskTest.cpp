@@ -300,7 +300,7 @@ TEST(Mask, Quads) {
         EXPECT_EQ(std::accumulate(mask.inQuad, mask.inQuad + 4, 0.0), 1);
         EXPECT_GE(*std::min_element(mask.inQuad, mask.inQuad + 4), 0);
         EXPECT_EQ(mask.inQuad[1], mask.inQuad[3]);
-        bool const isPlain = numSteps != 1 && numSteps != 2;
+        bool const isPlain = numSteps == 0 || numSteps >= FarExt::kNumStepsToConstantMasks;
         EXPECT_EQ(std::equal(plain.begin(), plain.end(), mask.inQuad), isPlain);
         for (int i = 0; i < mask.numRows; ++i) {
             double const *const row = mask.beside[i];

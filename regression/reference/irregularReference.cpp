@@ -6,7 +6,12 @@
 #include <algorithm>
 #include <cmath>
 #include <complex>
+#include <fstream>
 #include <map>
+#include <sstream>
+#include <stdexcept>
+#include <string>
+#include <utility>
 
 namespace OpenSubdivHex::Regression {
 
@@ -157,9 +162,9 @@ struct QuadParts {
     std::vector<std::array<double, 6>> beside;
 };
 std::vector<QuadParts> const kQuadParts = {
-    {{139, 45, 27, 45}, {{137, 58, 0, 14, 47, 0}}},
-    {{126, 56, 18, 56}, {{137, 63, 0, 22, 21, 13}, {97, 46, 21, 0, 33, 59}}},
-    {{144, 48, 16, 48}, {{142, 68, 0, 9, 37, 0}}},
+    {{127, 55, 19, 55}, {{137, 58, 0, 14, 47, 0}}},
+    {{122, 54, 26, 54}, {{137, 63, 0, 22, 21, 13}, {97, 46, 21, 0, 33, 59}}},
+    {{116, 54, 32, 54}, {{142, 68, 0, 9, 37, 0}}},
 };
 
 } // namespace
@@ -214,6 +219,125 @@ std::optional<Point> NewPointBesideQuad(int numSteps, std::vector<Point> const &
         sum += rows[row][j] / 256 * face[(i + (isMirrored ? 6 - j : j)) % 6];
     }
     return sum;
+}
+
+namespace {
+
+struct PathRow {
+    double ofVertex;
+    std::vector<double> weights; // none of quads
+};
+/// By the kind of a quad's vertex and the name of a path's row.
+using PathRows = std::map<std::pair<char, std::string>, PathRow>;
+
+PathRows readPathRows() {
+    constexpr double kParts = 4096;
+    std::ifstream file(REFERENCE_QUAD_ROWS);
+    PathRows rows;
+    for (std::string line; std::getline(file, line);) {
+        std::istringstream words(line);
+        char kind = 0;
+        std::string path;
+        double part = 0;
+        if (line[0] != '#' && words >> kind >> path >> part) {
+            PathRow &row = rows[{kind, path}];
+            row.ofVertex = part / kParts;
+            while (words >> part) {
+                row.weights.push_back(part / kParts);
+            }
+        }
+    }
+    if (rows.empty()) {
+        throw std::runtime_error("There are no rows in " REFERENCE_QUAD_ROWS);
+    }
+    return rows;
+}
+
+bool isAll(char digit, std::string const &digits) {
+    return std::all_of(digits.begin(), digits.end(), [digit](char d) { return d == digit; });
+}
+
+/// The name of a path's row: from four steps on the digits before the last two are a star, where they are all alike.
+std::string rowOfPath(QuadPath const &quadPath) {
+    std::string const &path = quadPath.steps;
+    if (path.size() < 2) {
+        return {};
+    }
+    std::string const digits = path.substr(1);
+    if (digits.size() < 4) {
+        return digits;
+    }
+    std::string const before = digits.substr(0, digits.size() - 2);
+    std::string const last = digits.substr(digits.size() - 2);
+    return isAll('0', before)                     ? "0*" + last
+           : isAll('3', before) && path[0] == '4' ? "3*" + last
+                                                  : "";
+}
+
+} // namespace
+
+QuadPath Shorten(QuadPath const &path) {
+    std::string const row = rowOfPath(path);
+    if (path.steps.size() <= 4) {
+        return path;
+    }
+    return row.empty() ? QuadPath()
+                       : QuadPath{path.steps.substr(0, 1) + row[0] + row[0] + row.substr(2),
+                                  path.sharpness};
+}
+
+namespace {
+
+/// Of a corner; null where its paths have none.
+PathRow const *findRow(QuadPath const &out, QuadPath const &in) {
+    static PathRows const rows = readPathRows();
+    std::string const ofOut = rowOfPath(out);
+    std::string const ofIn = rowOfPath(in);
+    if (ofOut.empty() || ofIn.empty()) {
+        return nullptr;
+    }
+    std::string const row = std::min(ofOut, ofIn);
+    bool const isStar = row.size() > 3;
+    if (isStar && ofOut[0] != ofIn[0]) {
+        return nullptr;
+    }
+    char kind = '4';
+    char const kindOfOut = out.steps[0];
+    if (!isStar && kindOfOut == in.steps[0]) {
+        // At a vertex of another kind, and beside it.
+        std::string const before = row.substr(0, row.size() - 1);
+        if (kindOfOut == 'o' && isAll('3', before) && (row.back() == '3' || row.back() == '1')) {
+            return nullptr;
+        }
+        kind = kindOfOut == 'o' ? '4' : kindOfOut;
+    }
+    for (char const wanted : {kind, '4'}) {
+        if (auto const found = rows.find({wanted, row}); found != rows.end()) {
+            return &found->second;
+        }
+    }
+    return nullptr;
+}
+
+} // namespace
+
+std::optional<Point> NewPointByPath(std::vector<Point> const &face, int i, QuadPath const &out,
+                                    QuadPath const &in) {
+    PathRow const *const row = findRow(out, in);
+    if (!row || row->weights.empty()) {
+        return {};
+    }
+    bool const isBackwards = rowOfPath(in) < rowOfPath(out);
+    Point sum = Point::Zero(face[0].size());
+    for (int j = 0; j < 6; ++j) {
+        sum += row->weights[j] * face[(i + (isBackwards ? 6 - j : j)) % 6];
+    }
+    return sum;
+}
+
+std::optional<double> WeightByPath(QuadPath const &out, QuadPath const &in) {
+    PathRow const *const row = findRow(out, in);
+    return row ? std::optional<double>(row->ofVertex) : std::nullopt;
 }
 
 Point NewPointOfQuad(int numSteps, std::vector<Point> const &face, int i) {

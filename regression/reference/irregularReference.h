@@ -5,6 +5,7 @@
 #include <Eigen/Core>
 
 #include <optional>
+#include <string>
 #include <vector>
 
 namespace OpenSubdivHex::Regression {
@@ -55,6 +56,32 @@ Eigen::RowVectorXd NewIrregularPoint(IrregularRule const &rule,
 /// \return  nothing where the level has no such rule
 std::optional<Eigen::RowVectorXd>
 NewPointBesideQuad(int numSteps, std::vector<Eigen::RowVectorXd> const &face, int i, int edge);
+
+/// \brief An end of an edge of a face, as what steps made of one in a quad: the kind of the quad's vertex, 3 to 6 by the
+/// number of quads there, or o for others, and a digit for each step; empty where it came from none.
+///
+/// 0: in the smaller copy of the face.  In the hexagon made for its edge: 1 at the new point, along the copy; 2 there,
+/// towards the old vertex; 3 at the old vertex, towards that point.
+struct QuadPath {
+    std::string steps;
+    float sharpness = 0; ///< of the sharpest at the quad's vertex, less one for each step
+
+    bool IsEmpty() const { return steps.empty(); }
+    double GetShare() const { return sharpness < 1 ? 1 - double(sharpness) : 0; }
+    /// After another step.
+    QuadPath Append(char digit) const {
+        return IsEmpty() ? *this : QuadPath{steps + digit, sharpness > 1 ? sharpness - 1 : 0};
+    }
+};
+
+/// A path of at most four steps that has the same rows, now and after any more steps; empty where it has none any more.
+QuadPath Shorten(QuadPath const &path);
+
+/// The point beside corner \p i of a hexagon by the paths of its edges there; nothing where they have no rule.
+std::optional<Eigen::RowVectorXd> NewPointByPath(std::vector<Eigen::RowVectorXd> const &face, int i,
+                                                 QuadPath const &out, QuadPath const &in);
+/// The weight of that point, or of one in a quad, where the corner's vertex is moved; nothing where they have no rule.
+std::optional<double> WeightByPath(QuadPath const &out, QuadPath const &in);
 
 /// The new point beside corner \p i of a quad.
 Eigen::RowVectorXd NewPointOfQuad(int numSteps, std::vector<Eigen::RowVectorXd> const &face, int i);

@@ -106,6 +106,8 @@ LimitReference::Piece LimitReference::cutOut(TaggedMesh const &mesh, int vertex,
         copy.vertices.resize(size);
         copy.edges.resize(size);
         copy.holes.assign(size, false); // of no matter for values
+        copy.pathsOut.resize(size);
+        copy.pathsIn.resize(size);
         signature.insert(signature.end(), {int(size), face.isHalf, face.isHalf ? entry.place : 0});
         for (std::size_t i = 0; i < size; ++i) {
             std::size_t const place = (std::size_t(entry.place) + i) % size;
@@ -115,8 +117,18 @@ LimitReference::Piece LimitReference::cutOut(TaggedMesh const &mesh, int vertex,
                 piece.sources.push_back(face.vertices[place]);
             }
             // Half faces begin with their long edge, others with where they were come to.
-            copy.vertices[face.isHalf ? place : i] = found->second;
+            std::size_t const to = face.isHalf ? place : i;
+            copy.vertices[to] = found->second;
             signature.push_back(found->second);
+            if (!face.pathsOut.empty()) {
+                copy.pathsOut[to] = Shorten(face.pathsOut[place]);
+                copy.pathsIn[to] = Shorten(face.pathsIn[place]);
+            }
+            for (QuadPath const &path : {copy.pathsOut[to], copy.pathsIn[to]}) {
+                signature.push_back(int(path.steps.size()));
+                signature.insert(signature.end(), path.steps.begin(), path.steps.end());
+                signature.push_back(bitsOf(path.sharpness));
+            }
         }
         part.faces.push_back(std::move(copy));
         if (!mesh.faceOrigins.empty()) {

@@ -133,6 +133,31 @@ bool isBesideQuad(ReferenceMesh const &mesh, HalfedgeHandle corner) {
     return mesh.numSteps > 0 && mesh.valence(face) == 4 && !mesh.is_boundary(face);
 }
 
+QuadPath longer(QuadPath const &path, char digit) { return path.Append(digit); }
+
+/// Of a half-edge, at its start or its end.
+QuadPath pathOf(ReferenceMesh const &mesh, HalfedgeHandle halfedge, bool isStart) {
+    if (mesh.numSteps > 0) {
+        auto const &paths = isStart ? mesh.pathsOfStart : mesh.pathsOfEnd;
+        auto const found = paths.find(halfedge.idx());
+        return found != paths.end() ? found->second : QuadPath();
+    }
+    VertexHandle const vertex =
+        isStart ? mesh.from_vertex_handle(halfedge) : mesh.to_vertex_handle(halfedge);
+    int numFaces = 0;
+    for (FaceHandle face : mesh.vf_range(vertex)) {
+        ++numFaces;
+        if (mesh.valence(face) != 4) {
+            return {};
+        }
+    }
+    if (mesh.is_boundary(vertex)) {
+        return {};
+    }
+    bool const hasKind = numFaces >= 3 && numFaces <= 6;
+    return {hasKind ? std::to_string(numFaces) : "o"};
+}
+
 /// The rules of Smooth for quads, and for hexagons that are beside a quad or have an irregular vertex: an
 /// edge to a quad comes first, quads further away last.
 std::optional<Point> irregularPoint(ReferenceMesh const &mesh,
@@ -143,6 +168,12 @@ std::optional<Point> irregularPoint(ReferenceMesh const &mesh,
     }
     if (corners.size() != 6) {
         return {};
+    }
+    if (points.size() == 6) {
+        if (auto const point = NewPointByPath(points, i, pathOf(mesh, corners[i], true),
+                                              pathOf(mesh, corners[(i + 5) % 6], false))) {
+            return point;
+        }
     }
     std::vector<int> edges; // to quads
     for (int edge = 0; edge < 6; ++edge) {
@@ -197,6 +228,25 @@ Point movedVertex(ReferenceMesh const &mesh, ReferenceValues const &values,
             ++numPoints;
         }
     }
+    if (mask == ReferenceMask::Smooth && mesh.numSteps > 0) {
+        Point const old = values.row(vertex.idx());
+        Point moved = old;
+        bool isByPath = true;
+        for (auto it = mesh.cvoh_iter(vertex); it.is_valid() && isByPath; ++it) {
+            std::optional<double> const weight =
+                mesh.is_boundary(*it)
+                    ? std::nullopt
+                    : WeightByPath(pathOf(mesh, *it, true),
+                                   pathOf(mesh, mesh.prev_halfedge_handle(*it), false));
+            isByPath = weight.has_value();
+            if (isByPath) {
+                moved += *weight * (newPoints.row(fVertices[it->idx()].idx()) - old);
+            }
+        }
+        if (isByPath) {
+            return moved;
+        }
+    }
     int const numFaces = mask == ReferenceMask::Smooth ? irregularFaces(mesh, vertex) : 0;
     if (numFaces > 0) {
         double const weight = makeRule(mesh, vertex, numFaces).meanWeight;
@@ -218,6 +268,21 @@ std::size_t countCorners(ReferenceMesh const &mesh) {
     return count;
 }
 
+/// Of a face of the child: the paths of its edges at each vertex.
+struct PathsAtVertex {
+    QuadPath out;
+    QuadPath in;
+};
+void setPaths(std::vector<VertexHandle> const &vertices, std::vector<PathsAtVertex> const &paths,
+              ReferenceMesh &mesh) {
+    for (std::size_t i = 0; i < vertices.size(); ++i) {
+        std::size_t const next = (i + 1) % vertices.size();
+        int const halfedge = mesh.find_halfedge(vertices[i], vertices[next]).idx();
+        mesh.pathsOfStart[halfedge] = paths[i].out;
+        mesh.pathsOfEnd[halfedge] = paths[next].in;
+    }
+}
+
 /// Stage 3: the new points of each face are joined to a face, and each edge makes one between the
 /// faces on its two sides.
 void connect(ReferenceMesh const &mesh, std::vector<VertexHandle> const &fVertices,
@@ -228,6 +293,12 @@ void connect(ReferenceMesh const &mesh, std::vector<VertexHandle> const &fVertic
             vertices.push_back(fVertices[corner.idx()]);
         }
         addFace(child.mesh, vertices);
+        std::vector<PathsAtVertex> paths;
+        for (HalfedgeHandle corner : faceCorners(mesh, face)) {
+            paths.push_back({longer(pathOf(mesh, corner, true), '0'),
+                             longer(pathOf(mesh, mesh.prev_halfedge_handle(corner), false), '0')});
+        }
+        setPaths(vertices, paths, child.mesh);
         ReferenceFaceOrigin origin;
         origin.face = face.idx();
         child.faceOrigins.push_back(origin);
@@ -247,8 +318,21 @@ void connect(ReferenceMesh const &mesh, std::vector<VertexHandle> const &fVertic
         } else {
             VertexHandle const bV1 = fVertices[b.idx()];
             VertexHandle const bV0 = fVertices[mesh.next_halfedge_handle(b).idx()];
-            addFace(child.mesh,
-                    {vVertex(numFVertices, v0), bV0, bV1, vVertex(numFVertices, v1), aV1, aV0});
+            std::vector<VertexHandle> const vertices = {vVertex(numFVertices, v0), bV0, bV1,
+                                                        vVertex(numFVertices, v1), aV1, aV0};
+            addFace(child.mesh, vertices);
+            std::vector<PathsAtVertex> paths(6);
+            int place = 0;
+            for (HalfedgeHandle side : {a, b}) { // at its start, at its end, and beside both
+                HalfedgeHandle const other = mesh.opposite_halfedge_handle(side);
+                QuadPath const atStart = pathOf(mesh, side, true);
+                QuadPath const atEnd = pathOf(mesh, side, false);
+                paths[place] = {longer(pathOf(mesh, other, false), '3'), longer(atStart, '3')};
+                paths[(place + 4) % 6] = {longer(atEnd, '1'), longer(atEnd, '2')};
+                paths[(place + 5) % 6] = {longer(atStart, '2'), longer(atStart, '1')};
+                place += 3;
+            }
+            setPaths(vertices, paths, child.mesh);
         }
         ReferenceFaceOrigin origin;
         origin.isEFace = true;

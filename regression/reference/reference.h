@@ -9,6 +9,7 @@
 
 #include <Eigen/Core>
 
+#include <map>
 #include <vector>
 
 namespace OpenSubdivHex::Regression {
@@ -22,6 +23,9 @@ struct ReferenceMesh : OpenMesh::PolyMesh_ArrayKernelT<ReferenceTraits> {
     int numSteps = 0; ///< that made it
     /// By vertex of a refined mesh: of those that the base mesh had, what their faces were there.
     std::vector<FormerFaces> formerFaces;
+    /// By half-edge of a refined mesh: what it came from at its start, and at its end.
+    std::map<int, QuadPath> pathsOfStart;
+    std::map<int, QuadPath> pathsOfEnd;
 };
 
 /// Values of any width, one row per vertex.

@@ -276,13 +276,15 @@ public:
             }
             auto const pull = pulls.find({origin.face, origin.place});
             double const towards = pull != pulls.end() ? pull->second : 0;
+            Side const corner = {origin.face, origin.place};
             _result.row(Eigen::Index(v)) =
-                cornerPoint({origin.face, origin.place}, towards, _values.row(origin.vertex));
+                mixByPath(corner, cornerPoint(corner, towards, _values.row(origin.vertex)));
         }
         for (std::size_t v = 0; v < _mesh.vertices.size(); ++v) {
             if (_child.vVertices[v] >= 0) {
-                _result.row(_child.vVertices[v]) =
-                    _isVarying ? Point(_values.row(Eigen::Index(v))) : movedVertex(int(v));
+                _result.row(_child.vVertices[v]) = _isVarying
+                                                       ? Point(_values.row(Eigen::Index(v)))
+                                                       : mixByPaths(int(v), movedVertex(int(v)));
             }
         }
         return std::move(_result);
@@ -328,14 +330,9 @@ private:
         if (line.sides.size() == 1) {
             return halfPoint(face, corner.place) + fromOneFace(face, corner);
         }
-        // The hexagon that the two halves make: V, R, S, W, Q, P.
-        bool const isFirst = line.sides[0].face == corner.face;
-        Face const &other = _mesh.faces[line.sides[isFirst ? 1 : 0].face];
-        std::vector<int> const &own = face.vertices;
-        std::vector<Point> const hexagon =
-            pointsOf({own[0], other.vertices[2], other.vertices[3], own[1], own[2], own[3]});
-        int const places[] = {0, 3, 4, 5};
-        Point const smooth = maskPoint(hexagon, places[corner.place]);
+        auto const [vertices, place] = hexagonOf(corner);
+        std::vector<Point> const hexagon = pointsOf(vertices);
+        Point const smooth = maskPoint(hexagon, place);
         double const sharp = _isVarying ? 0 : std::min(1.0, double(line.sharpness));
         Point const plain = sharp * halfPoint(face, corner.place) + towards * vertex +
                             (1 - sharp - towards) * smooth + fromOneFace(face, corner);
@@ -343,10 +340,10 @@ private:
             return plain;
         }
         int const self = corner.face;
-        int const partner = line.sides[isFirst ? 1 : 0].face;
+        int const partner = line.sides[line.sides[0].face == self ? 1 : 0].face;
         return _irregularities.Apply(
             hexagon, {{partner, 1}, {partner, 2}, {partner, 3}, {self, 1}, {self, 2}, {self, 3}},
-            line.sharpness, places[corner.place], plain);
+            line.sharpness, place, plain);
     }
 
     bool hasIrregularRules() const {
@@ -416,6 +413,81 @@ private:
         double const near = found->second.before;
         double const far = std::max(0.0, found->second.far - near); // the near end goes first
         return near * beside + far * farFrom - (near + far) * halfPoint(face, corner.place);
+    }
+
+    /// At a corner, those of the hexagon where its face is half of one.
+    std::pair<QuadPath, QuadPath> pathsOf(Side corner) const {
+        Face const &face = _mesh.faces[corner.face];
+        if (face.pathsOut.empty()) {
+            return {};
+        }
+        std::size_t const place = std::size_t(corner.place);
+        QuadPath out = face.pathsOut[place];
+        QuadPath in = face.pathsIn[place];
+        if (face.isHalf && place < 2) {
+            // At the ends of the line, one edge is the other half's.
+            Edge const &line = _mesh.edges[face.edges[0]];
+            if (line.sides.size() == 1) {
+                return {};
+            }
+            bool const isFirst = line.sides[0].face == corner.face;
+            Face const &other = _mesh.faces[line.sides[isFirst ? 1 : 0].face];
+            (place == 0 ? out : in) = place == 0 ? other.pathsOut[1] : other.pathsIn[0];
+        }
+        return {out, in};
+    }
+
+    /// A new point, whose rules by all else than paths have made \p other.
+    Point mixByPath(Side corner, Point const &other) const {
+        if (!hasIrregularRules()) {
+            return other;
+        }
+        auto const [hexagon, place] = hexagonOf(corner);
+        auto const [out, in] = pathsOf(corner);
+        std::optional<Point> const byPath =
+            hexagon.size() == 6 ? NewPointByPath(pointsOf(hexagon), place, out, in) : std::nullopt;
+        return byPath ? Point(out.GetShare() * *byPath + (1 - out.GetShare()) * other) : other;
+    }
+
+    /// A moved vertex, likewise: where the paths of all corners tell the weights of their new points.
+    Point mixByPaths(int v, Point const &other) const {
+        if (!hasIrregularRules() || _mesh.vertices[v].corners.empty()) {
+            return other;
+        }
+        Point const old = _values.row(v);
+        Point moved = old;
+        std::set<int> around;
+        double share = 0;
+        for (Side corner : _mesh.vertices[v].corners) {
+            int const point = _child.fVertices[corner.face][corner.place];
+            auto const [out, in] = pathsOf(corner);
+            std::optional<double> const weight = WeightByPath(out, in);
+            if (!weight) {
+                return other;
+            }
+            if (around.insert(point).second) {
+                moved += *weight * (_result.row(point) - old);
+            }
+            share = out.GetShare();
+        }
+        return share * moved + (1 - share) * other;
+    }
+
+    /// The face, or the hexagon whose half it is, V, R, S, W, Q, P; and the corner's place there.
+    std::pair<std::vector<int>, int> hexagonOf(Side corner) const {
+        Face const &face = _mesh.faces[corner.face];
+        std::vector<int> const &own = face.vertices;
+        if (!face.isHalf) {
+            return {own, corner.place};
+        }
+        Edge const &line = _mesh.edges[face.edges[0]];
+        if (line.sides.size() == 1) {
+            return {};
+        }
+        bool const isFirst = line.sides[0].face == corner.face;
+        std::vector<int> const &other = _mesh.faces[line.sides[isFirst ? 1 : 0].face].vertices;
+        int const places[] = {0, 3, 4, 5};
+        return {{own[0], other[2], other[3], own[1], own[2], own[3]}, places[corner.place]};
     }
 
     Point smoothVertex(int v) const {

@@ -26,6 +26,9 @@ struct TaggedMesh {
         std::vector<int> edges;  ///< edge i from vertex i to vertex i + 1
         bool isHalf = false;     ///< half a hexagon, edge 0 the long one
         std::vector<bool> holes; ///< by edge: whether the face is a hole there
+        /// By place: what the face's edges from there and to there came from; see QuadPath.
+        std::vector<QuadPath> pathsOut;
+        std::vector<QuadPath> pathsIn;
     };
     /// Where a face runs along an edge: from its corner \p place to the next.
     struct Side {

@@ -27,6 +27,7 @@ public:
 
     TaggedMesh Run() {
         makeVertices();
+        findBasePaths();
         makeFFaces();
         if (_step.scheme != ReferenceScheme::TriHex) {
             makeEFaces();
@@ -43,6 +44,8 @@ public:
 
 private:
     void makeVertices();
+    void findBasePaths();
+    void setPathsOfSide(int face, int start, int end, int endPoint, int startPoint, Side side);
     void makeFFaces();
     void makeEFaces();
     void makeVFaces();
@@ -76,6 +79,8 @@ private:
         face.vertices = std::move(vertices);
         face.isHalf = isHalf;
         face.holes = std::move(holes);
+        face.pathsOut.resize(face.vertices.size());
+        face.pathsIn.resize(face.vertices.size());
         _child.faces.push_back(face);
         _child.faceOrigins.push_back(origin);
         return int(_child.faces.size()) - 1;
@@ -105,6 +110,8 @@ private:
 
     TaggedMesh const &_parent;
     ReferenceStep const &_step;
+    std::vector<std::vector<QuadPath>> _pathsOut; ///< by face and place of the parent
+    std::vector<std::vector<QuadPath>> _pathsIn;
     TaggedMesh _child;
     std::set<std::pair<int, int>> _placed; ///< face and place of sides that have their edge
 };
@@ -145,11 +152,67 @@ void Refinement::makeVertices() {
     }
 }
 
+QuadPath longer(QuadPath const &path, char digit) { return path.Append(digit); }
+
+/// Of the parent: those that it has, or those that begin there.
+void Refinement::findBasePaths() {
+    for (Face const &face : _parent.faces) {
+        _pathsOut.push_back(face.pathsOut);
+        _pathsIn.push_back(face.pathsIn);
+        _pathsOut.back().resize(face.vertices.size());
+        _pathsIn.back().resize(face.vertices.size());
+    }
+    for (std::size_t v = 0; v < _parent.vertices.size(); ++v) {
+        TaggedMesh::Vertex const &vertex = _parent.vertices[v];
+        bool const areQuads =
+            std::all_of(vertex.corners.begin(), vertex.corners.end(), [&](Side corner) {
+                return _parent.faces[corner.face].vertices.size() == 4;
+            });
+        bool isInside = _parent.numHexagonalSteps == 0 && areQuads && !vertex.isNonManifold;
+        float sharpness = vertex.sharpness;
+        for (Side corner : vertex.corners) {
+            for (Side side : {corner, previousSide(_parent, corner)}) {
+                Edge const &edge = _parent.edges[_parent.faces[side.face].edges[side.place]];
+                isInside = isInside && edge.sides.size() == 2;
+                sharpness = std::max(sharpness, edge.sharpness);
+            }
+        }
+        if (!isInside || isInfinite(sharpness)) {
+            continue;
+        }
+        std::size_t const size = vertex.corners.size();
+        bool const hasKind = size >= 3 && size <= 6;
+        for (Side corner : vertex.corners) {
+            QuadPath const path = {hasKind ? std::to_string(size) : "o", sharpness};
+            _pathsOut[corner.face][corner.place] = path;
+            _pathsIn[corner.face][corner.place] = path;
+        }
+    }
+}
+
+/// In a face made for an edge: at the old vertices and the new points of a side.
+void Refinement::setPathsOfSide(int face, int start, int end, int endPoint, int startPoint,
+                                Side side) {
+    QuadPath const atStart = _pathsOut[side.face][side.place];
+    QuadPath const atEnd = _pathsIn[side.face][nextSide(_parent, side).place];
+    Face &made = _child.faces[face];
+    made.pathsIn[start] = longer(atStart, '3');
+    made.pathsOut[end] = longer(atEnd, '3');
+    made.pathsOut[endPoint] = longer(atEnd, '1');
+    made.pathsIn[endPoint] = longer(atEnd, '2');
+    made.pathsOut[startPoint] = longer(atStart, '2');
+    made.pathsIn[startPoint] = longer(atStart, '1');
+}
+
 void Refinement::makeFFaces() {
     for (std::size_t f = 0; f < _parent.faces.size(); ++f) {
         TaggedMesh::FaceOrigin origin;
         origin.face = int(f);
         addFace(_child.fVertices[f], _parent.faces[f].isHalf, _parent.faces[f].holes, origin);
+        for (std::size_t i = 0; i < _pathsOut[f].size() && isHexagonal(); ++i) {
+            _child.faces[f].pathsOut[i] = longer(_pathsOut[f][i], '0');
+            _child.faces[f].pathsIn[i] = longer(_pathsIn[f][i], '0');
+        }
     }
     for (Edge const &edge : _parent.edges) {
         if (edge.isLong) {
@@ -186,8 +249,10 @@ void Refinement::makeEFaces() {
             if (isFlat(int(e))) {
                 addFace({b0, b1, a1, a0}, false, std::vector<bool>(4, a && b), origin);
             } else {
-                addFace({vVertex(v0), b0, b1, vVertex(v1), a1, a0}, false, {b, b, b, a, a, a},
-                        origin);
+                int const face = addFace({vVertex(v0), b0, b1, vVertex(v1), a1, a0}, false,
+                                         {b, b, b, a, a, a}, origin);
+                setPathsOfSide(face, 0, 3, 4, 5, edge.sides[0]);
+                setPathsOfSide(face, 3, 0, 1, 2, edge.sides[1]);
             }
             continue;
         }
@@ -202,6 +267,9 @@ void Refinement::makeEFaces() {
                         !edge.isFree, std::vector<bool>(4, isHole(side)), origin);
             child.sides.push_back({face, 0});
             _placed.insert({face, 0});
+            if (edge.sides.size() == 2 && !isInfinite(edge.sharpness)) {
+                setPathsOfSide(face, 0, 1, 2, 3, side);
+            }
         }
         child.isFree = edge.isFree;
         child.line = edge.line;
@@ -329,6 +397,13 @@ void Refinement::mergeSmoothHalves() {
         std::vector<int> const b = _child.faces[second].vertices;
         _child.faces[first].vertices = {a[0], b[2], b[3], a[1], a[2], a[3]};
         _child.faces[first].isHalf = false;
+        for (bool isOut : {true, false}) {
+            auto const paths = isOut ? &Face::pathsOut : &Face::pathsIn;
+            std::vector<QuadPath> const p = _child.faces[first].*paths;
+            std::vector<QuadPath> const q = _child.faces[second].*paths;
+            _child.faces[first].*
+                paths = {isOut ? q[1] : p[0], q[2], q[3], isOut ? p[1] : q[0], p[2], p[3]};
+        }
         bool const isHoleA = _child.faces[first].holes[0];
         bool const isHoleB = _child.faces[second].holes[0];
         _child.faces[first].holes = {isHoleB, isHoleB, isHoleB, isHoleA, isHoleA, isHoleA};
