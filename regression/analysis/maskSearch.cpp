@@ -289,7 +289,9 @@ private:
                 CornerWeights mask = {nullptr, false};
                 if (ofLevel && size == kQuad && !parent.IsHalfFace(face)) {
                     mask.weights = ofLevel->inQuad;
-                } else if (ofLevel && !irregular.empty() && irregular[0].weight == 1) {
+                } else if (ofLevel && !irregular.empty() && irregular[0].weight == 1 &&
+                           FarExt::internal::FindCornerTags(parent.quadCorners, corner, corner + 1)
+                               .empty()) {
                     mask = findMask(_searched, *ofLevel, irregular[0]);
                 }
                 if (!mask.weights) {
