@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Makes the pictures of hexview in docs/images:
+"""Makes the pictures of hexview and hexrefine in docs/images:
 
     pictures.py HEXVIEW MESHES OUT [MODELS]
 
+hexrefine lies beside HEXVIEW.
 MODELS is a folder with suzanne.obj and spot_quadrangulated.obj, which are not in this repository;
 without it their pictures stay as they are.
 """
@@ -26,6 +27,18 @@ def draw(path, *options):
         file = pathlib.Path(folder) / "out.png"
         subprocess.run([hexview, path, *options, "--png", file], check=True)
         return Image.open(file).convert("RGB")
+
+
+def draw_view(pixel_error, *options):
+    """What a camera needs of the lantern, from the middle of a picture of 800 x 600."""
+    with tempfile.TemporaryDirectory() as folder:
+        file = pathlib.Path(folder) / "out.png"
+        subprocess.run([hexview.with_name("hexrefine"), meshes / "lantern.obj", "--adaptive",
+                        "--mask", "smooth", "--boundary", "edge-only", "--resolution", "800x600",
+                        "--fov", "30", "--pixel-error", pixel_error, *options, "--png", file],
+                       check=True)
+        small = Image.open(file).convert("RGB").resize((600, 450), Image.Resampling.LANCZOS)
+        return small.crop((100, 0, 500, 450))
 
 
 def save(name, *images):
@@ -65,6 +78,8 @@ save("hexview", draw_window(1100, 780, meshes / "lantern.obj", "--level", "3", "
 save("strip", draw(meshes / "lantern.obj", "--adaptive", "--pixel-error", "3", "--shading",
                    "levels", "--elevation", "10", "--distance", "0.8", "--width", "400",
                    "--height", "520", "--frames", "3"))
+save("adaptive", draw_view("4", "--png-colors", "levels"), draw_view("0.5"),
+     draw_view("1e-9", "--max-level", "5"))
 view = ("--patches", "--edge-pixels", "3", "--elevation", "20", "--distance", "0.8",
         "--width", "560", "--height", "520")
 save("patches", draw(meshes / "jug.obj", "--level", "1", *view),
