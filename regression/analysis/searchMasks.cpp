@@ -37,7 +37,7 @@ using Weights = Eigen::VectorXd;
 using Entries = std::vector<std::pair<std::string, double>>;
 
 /// A table in the forms that all have.
-struct Fit {
+struct TableFit {
     Weights shipped;
     Weights start;
     int maxSteps;
@@ -47,7 +47,7 @@ struct Fit {
     std::function<void(Weights const &)> print;
 };
 
-void run(Fit const &fit) {
+void run(TableFit const &fit) {
     auto const show = [&fit](char const *title, Weights const &weights) {
         std::printf("%-24s %.5f", title, fit.measure(weights).norm());
         for (auto const &[name, value] : fit.judge(weights)) {
