@@ -25,6 +25,25 @@ public:
     Parameterization() = default;
     /// The parameterization of a face of \p faceSize vertices; invalid for fewer than 3, and for more than Bfr allows.
     explicit Parameterization(int faceSize);
+    /// One of OpenSubdiv's own, of any scheme.
+    explicit Parameterization(OpenSubdiv::Bfr::Parameterization const &other)
+        : OpenSubdiv::Bfr::Parameterization(other) {}
+
+    /// @name The plane of the face
+    /// Coordinates in one piece, as LevelTessellation::GetPlaneCoords() has them: quads and triangles have their (u, v),
+    /// other faces are regular polygons with sides 1 long.  Take (u, v) there to weigh those of several points, as
+    /// for a ray's hit in a facet: points of different sub-faces have no mean in (u, v).
+    ///
+    /// Of a valid parameterization, and for finite numbers.  REAL is float or double.
+    /// @{
+
+    /// Where \p uv lies in the plane.  (u, v) outside its sub-face is moved to the boundary of this.
+    template <typename REAL>
+    void ConvertToPlane(REAL const uv[2], REAL xy[2]) const;
+    /// (u, v) of a point of the plane.  A point outside a face with sub-faces is moved to its boundary, towards the centre.
+    template <typename REAL>
+    void ConvertFromPlane(REAL const xy[2], REAL uv[2]) const;
+    /// @}
 };
 
 } // namespace OpenSubdivHex::BfrExt

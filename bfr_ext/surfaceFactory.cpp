@@ -311,7 +311,7 @@ CallStatus SurfaceFactory::TryInit(Index face, Interpolation interpolation, int 
     internal::BaseFace const *const kept =
         hasRefinedAgain() ? nullptr : types->kept.Find(kind, face);
     if (kept) {
-        set(*kept, true, std::move(owner), surface);
+        set(*kept, true, owner, surface);
         return CallStatus();
     }
     // Where memory runs out, the surface stays as it was.
@@ -321,10 +321,10 @@ CallStatus SurfaceFactory::TryInit(Index face, Interpolation interpolation, int 
     if (!own) {
         surface.Clear();
     } else if (internal::BaseFace const *const added = types->kept.Add(kind, face, *own)) {
-        set(*added, true, std::move(owner), surface);
+        set(*added, true, owner, surface);
     } else {
         surface._ownFace.swap(maker.bytes);
-        set(*own, false, std::move(owner), surface);
+        set(*own, false, owner, surface);
     }
     return status;
 }
@@ -332,9 +332,9 @@ CallStatus SurfaceFactory::TryInit(Index face, Interpolation interpolation, int 
 // Makes the surface that of a face, which is kept or is its own; a null owner: it has that already.
 template <typename REAL>
 void SurfaceFactory::set(internal::BaseFace const &face, bool isKept,
-                         std::shared_ptr<Types const> owner, Surface<REAL> &surface) const {
+                         std::shared_ptr<Types const> const &owner, Surface<REAL> &surface) const {
     if (owner) {
-        surface._owner = std::move(owner);
+        surface._owner = owner;
     }
     surface._keptFace = isKept ? &face : nullptr;
     surface._patchLevel = getPatchLevel(face.type);

@@ -312,7 +312,7 @@ private:
                                 internal::KeptFace<internal::BaseType> const *&made) const;
     template <typename REAL>
     void set(internal::KeptFace<internal::BaseType> const &face, bool isKept,
-             std::shared_ptr<Types const> owner, Surface<REAL> &surface) const;
+             std::shared_ptr<Types const> const &owner, Surface<REAL> &surface) const;
 
     FarExt::TopologyRefiner const &_refiner;
     FarExt::TopologyLevel const _level;

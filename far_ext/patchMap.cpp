@@ -316,11 +316,12 @@ void PatchMap::GetFacePlace(Place const &place, double *u, double *v) const {
     Point const point = evaluate(GetCoords(place.patch), place.s, place.t);
     int const size = _faceSizes[std::size_t(GetFace(place.patch))];
     std::array<double, 2> uv = {point.u, point.v};
-    if (internal::MakeFaceParameterization(size).HasSubFaces()) {
+    auto const parameterization = internal::MakeFaceParameterization(size);
+    if (parameterization.HasSubFaces()) {
         int sector = 0;
         internal::BasePolygon const polygon(size);
         internal::SectorPoint const inSector = findSectorPoint(polygon, point, sector);
-        uv = internal::FindFaceCoords(polygon, sector, inSector);
+        uv = internal::FindFaceCoords(parameterization, polygon, sector, inSector);
     }
     *u = uv[0];
     *v = uv[1];

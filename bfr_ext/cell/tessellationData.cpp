@@ -320,7 +320,7 @@ std::vector<int> TessellationData::setPlaces(CellMesh const &mesh, std::vector<i
         double const start = std::ldexp(double(vert.a), -CellShape::kBits);
         double const end = std::ldexp(double(vert.b), -CellShape::kBits);
         Pair const coordsOfPlace =
-            FarExt::internal::FindFaceCoords(polygon, vert.sector, {start, end});
+            FarExt::internal::FindFaceCoords(parameterization, polygon, vert.sector, {start, end});
         std::copy(coordsOfPlace.begin(), coordsOfPlace.end(), &coords[2 * place]);
         places.push_back({vert.sector, start, end});
         if (tree && vert.cell >= 0) {

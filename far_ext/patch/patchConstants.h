@@ -59,7 +59,7 @@ struct PatchSite {
 };
 
 /// \brief All constants of a mask: for FaceMask::Smooth those of the first levels that
-/// regression/analysis/searchPatchConstants finds, from the errors of some meshes of quads and truncated ones; else a
+/// `./dev masks` finds, from the errors of some meshes of quads and truncated ones; else a
 /// rule of a few numbers.
 class PatchConstants {
 public:

@@ -76,13 +76,15 @@ public:
             int const numSteps = star ? kNumStepsToConstantMasks : int(std::strlen(path));
             int const first =
                 star ? (row.path[0] == '3' ? kNumEndings : 0) : kNumPaths * getKind(row.numFaces);
-            _places[std::size_t(numSteps)][std::size_t(first + digits)] = int(_rows.size());
+            int const place = first + digits;
+            _places[std::size_t(numSteps)][std::size_t(place)] = int(_rows.size());
             Row &made = _rows.emplace_back();
             std::transform(row.parts, row.parts + kHexagon, made.weights,
                            [](int part) { return part / kParts; });
             made.hasMask =
                 std::any_of(row.parts, row.parts + kHexagon, [](int part) { return part > 0; });
             made.ofVertex = row.ofVertex / kParts;
+            made.position = int(_rows.size()) - 1;
         }
     }
 
@@ -90,6 +92,7 @@ public:
         double weights[kHexagon];
         bool hasMask;
         double ofVertex;
+        int position; // in the table
     };
     // Null where there is none.
     Row const *Find(int numSteps, int place) const {
@@ -100,8 +103,8 @@ public:
 private:
     static constexpr int kNone = -1;
 
-    std::array<std::array<int, std::size_t(kNumVertices *kNumPaths)>, kNumStepsToConstantMasks + 1>
-        _places;
+    static constexpr std::size_t kNumPlaces = std::size_t{kNumVertices} * kNumPaths;
+    std::array<std::array<int, kNumPlaces>, kNumStepsToConstantMasks + 1> _places;
     std::vector<Row> _rows;
 };
 
@@ -137,8 +140,8 @@ QuadFlags AppendToQuadFlags(QuadFlags flags, int numSteps, int outDigit, int inD
 }
 
 QuadRow FindQuadRow(int numSteps, QuadFlags flags) {
-    static Rows const rows;
-    static constexpr QuadRow kNone = {nullptr, false, -1};
+    static Rows const kRows;
+    static constexpr QuadRow kNone = {nullptr, false, -1, -1};
     if (flags.out == 0 || flags.in == 0 || numSteps == 0) {
         return kNone;
     }
@@ -147,12 +150,13 @@ QuadRow FindQuadRow(int numSteps, QuadFlags flags) {
     int const path = std::min(pathOut, pathIn);
     bool const isBackwards = pathIn < pathOut;
     auto const make = [isBackwards](Rows::Row const *row) {
-        return row ? QuadRow{row->hasMask ? &row->weights : nullptr, isBackwards, row->ofVertex}
+        return row ? QuadRow{row->hasMask ? &row->weights : nullptr, isBackwards, row->ofVertex,
+                             row->position}
                    : kNone;
     };
     if (numSteps >= kNumStepsToConstantMasks) {
         bool const isSame = pathOut / kNumEndings == pathIn / kNumEndings;
-        return isSame ? make(rows.Find(kNumStepsToConstantMasks, path)) : kNone;
+        return isSame ? make(kRows.Find(kNumStepsToConstantMasks, path)) : kNone;
     }
     // Beside other vertices, and beside their neighbors, the rows of four quads are not for these.
     bool const isBeside =
@@ -160,8 +164,8 @@ QuadRow FindQuadRow(int numSteps, QuadFlags flags) {
     if (vertex == kOtherFaces && isBeside) {
         return kNone;
     }
-    Rows::Row const *const ofVertex = rows.Find(numSteps, kNumPaths * vertex + path);
-    return make(ofVertex ? ofVertex : rows.Find(numSteps, path));
+    Rows::Row const *const ofVertex = kRows.Find(numSteps, kNumPaths * vertex + path);
+    return make(ofVertex ? ofVertex : kRows.Find(numSteps, path));
 }
 
 } // namespace OpenSubdivHex::FarExt::internal

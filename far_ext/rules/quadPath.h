@@ -24,9 +24,9 @@ namespace OpenSubdivHex::FarExt::internal {
 /// begins with 3 3 ... 3, or near a quad, 0 0 ... 0; of the path the last two digits matter.
 using QuadFlag = std::uint16_t;
 
-/// One at a vertex that has \p numFaces faces, all of them quads, before the first step.
+/// The flag at a vertex that has \p numFaces faces, all of them quads, before the first step.
 OPENSUBDIVHEX_API QuadFlag MakeQuadFlag(int numFaces);
-/// The same of any vertex inside of a mesh; 0 where a face, from getFaceSize(0) on, is no quad.
+/// The flag at any vertex inside a mesh; 0 where a face is no quad.  getFaceSize(i) is the size of face i around it.
 template <typename GETFACESIZE>
 QuadFlag FindQuadFlag(int numFaces, GETFACESIZE const &getFaceSize) {
     for (int i = 0; i < numFaces; ++i) {
@@ -37,19 +37,19 @@ QuadFlag FindQuadFlag(int numFaces, GETFACESIZE const &getFaceSize) {
     return MakeQuadFlag(numFaces);
 }
 
-/// \brief Those of a corner, with its two edges: both came from one vertex of quads.
+/// \brief The two flags of a corner, one with each of its edges: both came from one vertex of quads.
 struct QuadFlags {
     QuadFlag out; ///< with the edge that begins at the corner
     QuadFlag in;  ///< with the edge that ends there
-    /// Of the sharpest there was at the vertex of the quads, less one for each step since.
+    /// The sharpness of the sharpest edge there, or of the vertex itself, before the first step, less one for each step.
     float sharpness;
 
     bool HasAny() const { return out != 0 || in != 0; }
-    /// Of the masks that the paths tell; others have what is left.
+    /// The share of the masks that the paths tell; other masks have the rest.
     float GetShare() const { return sharpness < 1 ? 1 - sharpness : 0; }
 };
 
-/// What a step makes of flags with these digits, at a level that \p numSteps hexagonal steps made.
+/// Makes the flags that a step appends these digits to; \p numSteps hexagonal steps made the level that has \p flags.
 QuadFlags AppendToQuadFlags(QuadFlags flags, int numSteps, int outDigit, int inDigit);
 
 /// \brief What the paths of its flags tell of a corner's F-vertex.
@@ -57,12 +57,13 @@ struct QuadRow {
     /// In a hexagon, from the corner on forward around the face, or backward; null where they tell none.
     double const (*mask)[6];
     bool isBackwards;
-    /// Its weight in V' of its vertex; negative where they tell none.
+    /// The weight of the F-vertex in V' of the corner's vertex; negative where they tell none.
     double vertexWeight;
+    int position; ///< of the row in quadRows.inl; negative where they tell none
 };
 
-/// Of a corner at a level that \p numSteps hexagonal steps made.
-QuadRow FindQuadRow(int numSteps, QuadFlags flags);
+/// Finds the row of a corner at a level that \p numSteps hexagonal steps made.
+OPENSUBDIVHEX_API QuadRow FindQuadRow(int numSteps, QuadFlags flags);
 
 } // namespace OpenSubdivHex::FarExt::internal
 

@@ -1,4 +1,6 @@
-// In 4096ths: the weight of the F-vertex in V', and, of a hexagon, its row.  Symmetric rows are those of corners whose flags have equal paths.
+// In 4096ths: the weight of the F-vertex in V', and, of a hexagon, its row.
+// Symmetric rows are those of corners whose flags have equal paths.
+// clang-format off
 {4, "0", 1370, {}},
 {4, "1", 840, {2376, 837, 0, 208, 675, 0}},
 {4, "3", 381, {850, 1462, 161, 0, 161, 1462}},

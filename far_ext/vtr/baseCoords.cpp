@@ -106,11 +106,13 @@ bool FindBaseCoords(MeshLevels const &mesh, int baseDepth, int depth, Cell cell,
     PlacedCell const placed = place(mesh, baseDepth, depth, cell);
     int const size = mesh.levels[std::size_t(baseDepth)].GetFaceSize(placed.baseFace);
     BasePolygon const polygon(size);
+    auto const parameterization = MakeFaceParameterization(size);
     auto const writePoint = [&](int sector, SectorPoint point, REAL *at) {
         if (coordsOf == CoordsOf::Plane) {
             polygon.Write(sector, point, at);
         } else {
-            BasePolygon::Pair const coords = FindFaceCoords(polygon, sector, point);
+            BasePolygon::Pair const coords =
+                FindFaceCoords(parameterization, polygon, sector, point);
             at[0] = REAL(coords[0]);
             at[1] = REAL(coords[1]);
         }

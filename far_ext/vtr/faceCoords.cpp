@@ -55,9 +55,9 @@ PlanePlace FindInPlane(Bfr::Parameterization const &parameterization, Pair const
         size, [&](auto const &polygon) { return findInSubFace(polygon, size, subFace, s, t); });
 }
 
-Pair FindFaceCoords(BasePolygon const &polygon, int sector, SectorPoint point) {
+Pair FindFaceCoords(Bfr::Parameterization const &parameterization, BasePolygon const &polygon,
+                    int sector, SectorPoint point) {
     int const size = polygon.GetSize();
-    Bfr::Parameterization const parameterization = MakeFaceParameterization(size);
     if (!parameterization.HasSubFaces()) {
         Pair uv;
         polygon.Write(sector, point, uv.data());

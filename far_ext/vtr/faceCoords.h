@@ -34,11 +34,12 @@ struct PlanePlace {
 OPENSUBDIVHEX_API PlanePlace FindInPlane(OpenSubdiv::Bfr::Parameterization const &parameterization,
                                          BasePolygon::Pair const &uv);
 
-/// \brief The u and v of a point of a face, whose plane \p polygon is.
+/// \brief The u and v of a point of the face of a valid parameterization, whose plane \p polygon is.
 ///
 /// Between two sub-faces it is in the second, but the centre is in that of corner 0.
-OPENSUBDIVHEX_API BasePolygon::Pair FindFaceCoords(BasePolygon const &polygon, int sector,
-                                                   SectorPoint point);
+OPENSUBDIVHEX_API BasePolygon::Pair
+FindFaceCoords(OpenSubdiv::Bfr::Parameterization const &parameterization,
+               BasePolygon const &polygon, int sector, SectorPoint point);
 
 } // namespace OpenSubdivHex::FarExt::internal
 

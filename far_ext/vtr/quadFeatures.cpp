@@ -17,15 +17,12 @@ namespace {
 using Far::Index;
 using Sdc::Crease;
 
-constexpr int kHexagon = HexIndexing::kNumEFaceCorners;
-constexpr int kQuad = 4;
-
 QuadFlags makeBaseFlags(Level const &level, Index vert) {
     Far::ConstIndexArray const faces = level.GetVertexFaces(vert);
     QuadFlag const flag = FindQuadFlag(faces.size(), [&](int i) {
         return level.IsHalfFace(faces[i]) ? 0 : level.GetFaceSize(faces[i]);
     });
-    if (faces.size() == 0 || flag == 0 || level.IsNonManifold(vert)) {
+    if (faces.empty() || flag == 0 || level.IsNonManifold(vert)) {
         return {};
     }
     Far::ConstIndexArray const edges = level.GetVertexEdges(vert);
@@ -105,6 +102,7 @@ private:
 
 // Returns whether there are any flags.
 bool QuadFinder::readParent() {
+    constexpr int kQuad = 4;
     bool const isBase = _parent.numHexagonalSteps == 0;
     std::vector<Index> const &sizes = _parent.faceSizes;
     if (isBase ? std::find(sizes.begin(), sizes.end(), kQuad) == sizes.end()
@@ -160,11 +158,11 @@ void QuadFinder::forEachCorner(Index face, FUNCTION const &function) const {
         }
         return;
     }
-    if (face >= _level.numFaces - _level.numVFaces || size != kHexagon) {
+    if (face >= _level.numFaces - _level.numVFaces || size != HexIndexing::kNumEFaceCorners) {
         return;
     }
     Index const edge = _refinement.GetEFaceParent(face);
-    QuadFlags made[kHexagon];
+    QuadFlags made[HexIndexing::kNumEFaceCorners];
     for (int side = 0; side < 2; ++side) {
         EFaceSide const &places = side == 0 ? kEFaceSideA : kEFaceSideB;
         Index const start = _parent.GetSideCorner(edge, side);
@@ -179,7 +177,7 @@ void QuadFinder::forEachCorner(Index face, FUNCTION const &function) const {
         made[places.endFVertex] = append({atEnd.in, atEnd.in, atEnd.sharpness}, 1, 2);
         made[places.startFVertex] = append({atStart.out, atStart.out, atStart.sharpness}, 2, 1);
     }
-    for (int local = 0; local < kHexagon; ++local) {
+    for (int local = 0; local < HexIndexing::kNumEFaceCorners; ++local) {
         function(first + local, made[local]);
     }
 }

@@ -5,6 +5,7 @@
 #include "indexSet.h"
 #include "parallel.h"
 
+#include <array>
 #include <cstddef>
 #include <cstring>
 #include <iterator>
@@ -59,6 +60,16 @@ struct TagRange {
     bool empty() const { return first == behind; }
 };
 
+// What a tag is, in a face that begins at a corner: an even number of words.
+template <typename TAG>
+auto getWords(TAG tag, Index firstCorner) {
+    tag.corner -= firstCorner;
+    constexpr std::size_t kNumWords = sizeof tag / sizeof(std::uint32_t);
+    std::array<std::uint32_t, (kNumWords + 1) / 2 * 2> words = {};
+    std::memcpy(words.data(), &tag, sizeof tag);
+    return words;
+}
+
 // Key of the rule of a face: equal keys have equal rules.
 struct FaceTags {
     Index firstCorner;
@@ -75,10 +86,8 @@ struct FaceTags {
                       diagonalEnd == other.diagonalEnd;
         CornerTags::ForEachKind(
             [&](auto const &tags, auto const &otherTags) {
-                auto const isSame = [&](auto x, auto y) {
-                    x.corner -= firstCorner;
-                    y.corner -= other.firstCorner;
-                    return std::memcmp(&x, &y, sizeof x) == 0;
+                auto const isSame = [&](auto const &x, auto const &y) {
+                    return getWords(x, firstCorner) == getWords(y, other.firstCorner);
                 };
                 result = result && std::equal(tags.begin(), tags.end(), otherTags.begin(),
                                               otherTags.end(), isSame);
@@ -97,12 +106,9 @@ struct FaceTags {
             add(getBits(tags.diagonal), std::uint32_t(tags.diagonalEnd));
             CornerTags::ForEachKind(
                 [&](auto const &ofKind) {
-                    for (auto tag : ofKind) {
-                        tag.corner -= tags.firstCorner;
-                        constexpr std::size_t kNumWords = sizeof tag / sizeof(std::uint32_t);
-                        std::uint32_t words[kNumWords + 1] = {};
-                        std::memcpy(words, &tag, sizeof tag);
-                        for (std::size_t i = 0; i < kNumWords; i += 2) {
+                    for (auto const &tag : ofKind) {
+                        auto const words = getWords(tag, tags.firstCorner);
+                        for (std::size_t i = 0; i < words.size(); i += 2) {
                             add(words[i], words[i + 1]);
                         }
                     }
@@ -493,7 +499,7 @@ void RefinementRules::DenseRuleMaker::addRule(FaceTags const &tags) {
         QuadCorner const *const ofQuad =
             quad != tags.quadCorners.end() && quad->corner == corner ? quad++ : nullptr;
         QuadRow const byPath =
-            ofQuad && size == kHexagon ? findQuadRow(*ofQuad) : QuadRow{nullptr, false, -1};
+            ofQuad && size == kHexagon ? findQuadRow(*ofQuad) : QuadRow{nullptr, false, -1, -1};
         float const ofPath = byPath.mask ? ofQuad->flags.GetShare() : 0;
         std::size_t const circulantRow =
             _rules._circulants[std::size_t(size)] + std::size_t(size - i);

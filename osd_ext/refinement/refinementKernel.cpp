@@ -159,9 +159,16 @@ void refineMixedVertexRun(RefinementTask const &task, IndexRun run) {
             sum = Spread(inverses[numFaces]) * sum;
         } else {
             float const *const weights = refinement.vertexWeights.data() + position;
+            auto const load = [&](int i) {
+                return Spread(weights[i + 1]) * ACCESS::Load(fVertices, corners[i]);
+            };
             sum = Spread(weights[0]) * sum;
-            for (int i = 0; i < numFaces; ++i) {
-                sum = sum + Spread(weights[i + 1]) * ACCESS::Load(fVertices, corners[i]);
+            if (numFaces == kFVertexFaces) {
+                sum = sum + (load(0) + (load(1) + load(2)));
+            } else {
+                for (int i = 0; i < numFaces; ++i) {
+                    sum = sum + load(i);
+                }
             }
         }
         corners += numFaces;

@@ -146,7 +146,7 @@ def test_second_derivatives_of_a_tessellation_are_differences_of_stencils(factor
         shift = np.eye(2)[axis] * step
         ends = [surface.evaluate_stencil(coords + sign * shift) @ control for sign in (-1, 1)]
         difference = (ends[0] + ends[1] - 2 * surface.evaluate_stencil(coords) @ control) / step**2
-        np.testing.assert_allclose(second[smooth], difference, atol=0.02)
+        np.testing.assert_allclose(second[smooth], difference, atol=0.06)
 
 
 def test_second_derivatives_of_places_are_near_those_of_the_surface(factory):

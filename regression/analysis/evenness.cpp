@@ -24,24 +24,6 @@ double const kPi = std::acos(-1.0);
 /// Groups of MeasureTorusUnevenness.
 constexpr int kNumParallels = 128;
 
-/// By vertex: its part of the areas of its faces.
-std::vector<double> findAreas(PolygonMesh const &mesh) {
-    std::vector<double> areas(mesh.positions.size(), 0.0);
-    for (int face = 0; face < mesh.GetNumFaces(); ++face) {
-        int const size = mesh.GetFaceSize(face);
-        Vector3d const first = mesh.positions[mesh.GetFaceVertex(face, 0)];
-        Vector3d doubled = Vector3d::Zero();
-        for (int i = 2; i < size; ++i) {
-            doubled += (mesh.positions[mesh.GetFaceVertex(face, i - 1)] - first)
-                           .cross(mesh.positions[mesh.GetFaceVertex(face, i)] - first);
-        }
-        for (int i = 0; i < size; ++i) {
-            areas[mesh.GetFaceVertex(face, i)] += doubled.norm() / 2 / size;
-        }
-    }
-    return areas;
-}
-
 void addVertex(Vector3d const &position, Shape &shape) {
     shape.positions.insert(shape.positions.end(), position.begin(), position.end());
 }
@@ -86,13 +68,30 @@ Shape makeHull(char const *name, std::vector<Vector3d> const &points) {
 
 } // namespace
 
+std::vector<double> ComputeVertexAreas(PolygonMesh const &mesh) {
+    std::vector<double> areas(mesh.positions.size(), 0.0);
+    for (int face = 0; face < mesh.GetNumFaces(); ++face) {
+        int const size = mesh.GetFaceSize(face);
+        Vector3d const first = mesh.positions[mesh.GetFaceVertex(face, 0)];
+        Vector3d doubled = Vector3d::Zero();
+        for (int i = 2; i < size; ++i) {
+            doubled += (mesh.positions[mesh.GetFaceVertex(face, i - 1)] - first)
+                           .cross(mesh.positions[mesh.GetFaceVertex(face, i)] - first);
+        }
+        for (int i = 0; i < size; ++i) {
+            areas[mesh.GetFaceVertex(face, i)] += doubled.norm() / 2 / size;
+        }
+    }
+    return areas;
+}
+
 Eigen::VectorXd MeasureDeviations(PolygonMesh const &mesh, std::vector<int> const &vertices,
                                   std::vector<int> const &groups, Curvature curvature) {
     struct Sum {
         double area = 0;
         double curvature = 0;
     };
-    std::vector<double> const areas = findAreas(mesh);
+    std::vector<double> const areas = ComputeVertexAreas(mesh);
     std::map<int, Sum> sums;
     Sum all;
     Eigen::VectorXd values(vertices.size());

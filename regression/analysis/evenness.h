@@ -25,6 +25,9 @@ double MeasureUnevenness(PolygonMesh const &mesh, std::vector<int> const &vertic
 Eigen::VectorXd MeasureDeviations(PolygonMesh const &mesh, std::vector<int> const &vertices,
                                   std::vector<int> const &groups, Curvature curvature);
 
+/// By vertex: its part of the areas of its faces.
+std::vector<double> ComputeVertexAreas(PolygonMesh const &mesh);
+
 /// Over the whole of \p mesh, as of a sphere.
 double MeasureSphereUnevenness(PolygonMesh const &mesh);
 

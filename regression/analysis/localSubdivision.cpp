@@ -89,7 +89,7 @@ struct Walk {
 
 /// A vertex as a combination of others, with the interface that primvar refiners ask for.
 struct Row {
-    using Weights = std::vector<std::pair<int, double>>;
+    using Weights = ChildRow;
     void Clear() { weights.clear(); }
     void AddWithWeight(Row const &other, double weight) {
         for (auto const &[vertex, part] : other.weights) {
@@ -216,10 +216,6 @@ LocalSubdivision MakeLocalSubdivision(FarExt::HexSchemeOptions const &schemeOpti
     for (int depth = 0; depth < pDepth; ++depth) {
         center = FindChild(center, refiner->GetLevel(depth), refiner->GetLevel(depth + 1));
     }
-    FarExt::TopologyLevel const &level = refiner->GetLevel(pDepth);
-    FarExt::TopologyLevel const &cLevel = refiner->GetLevel(pDepth + 1);
-    MeshCenter const child = FindChild(center, level, cLevel);
-
     FarExt::StencilTableFactoryReal<double>::Options tableOptions;
     tableOptions.generateIntermediateLevels = false;
     tableOptions.factorizeIntermediateLevels = false;
@@ -232,9 +228,18 @@ LocalSubdivision MakeLocalSubdivision(FarExt::HexSchemeOptions const &schemeOpti
         }
         return weights;
     };
-    return makeLocalSubdivision(level, center, cLevel, child,
-                                findTurn(schemeOptions.schemeType, level, center, cLevel, child),
-                                getWeights);
+    return MakeLocalSubdivision(*refiner, pDepth, center, getWeights);
+}
+
+LocalSubdivision MakeLocalSubdivision(FarExt::TopologyRefiner const &refiner, int depth,
+                                      MeshCenter center,
+                                      std::function<ChildRow(int)> const &getRow) {
+    FarExt::TopologyLevel const &level = refiner.GetLevel(depth);
+    FarExt::TopologyLevel const &cLevel = refiner.GetLevel(depth + 1);
+    MeshCenter const child = FindChild(center, level, cLevel);
+    double const turn =
+        findTurn(refiner.GetHexSchemeOptions().schemeType, level, center, cLevel, child);
+    return makeLocalSubdivision(level, center, cLevel, child, turn, getRow);
 }
 
 LocalSubdivision MakeLocalSubdivision(Sdc::SchemeType scheme, int order) {

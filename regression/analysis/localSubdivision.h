@@ -5,11 +5,14 @@
 #include "meshCenter.h"
 
 #include "far_ext/hexSchemeOptions.h"
+#include "far_ext/topologyRefiner.h"
 
 #include <opensubdiv/sdc/types.h>
 
 #include <Eigen/Core>
 
+#include <functional>
+#include <utility>
 #include <vector>
 
 namespace OpenSubdivHex::Regression {
@@ -49,6 +52,17 @@ struct LocalSubdivision {
 /// \throws std::runtime_error  if the neighbourhood is not the same at both levels
 LocalSubdivision MakeLocalSubdivision(FarExt::HexSchemeOptions const &schemeOptions,
                                       CenterKind baseKind, int order);
+
+/// Of a child vertex: vertices of its parent level, each with its weight.
+using ChildRow = std::vector<std::pair<int, double>>;
+
+/// \brief The same of a mesh that is refined already, around \p center of level \p depth, with rows of the
+/// caller's.
+///
+/// \param getRow  called with vertices of the next level, which has full topology
+LocalSubdivision MakeLocalSubdivision(FarExt::TopologyRefiner const &refiner, int depth,
+                                      MeshCenter center,
+                                      std::function<ChildRow(int)> const &getRow);
 
 /// \brief The same of one of OpenSubdiv's schemes, Catmull-Clark or Loop, around a vertex, by Far's
 /// primvar refiner.

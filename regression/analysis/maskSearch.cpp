@@ -2,11 +2,13 @@
 #include "maskSearch.h"
 
 #include "evenness.h"
+#include "leastSquares.h"
 #include "maskedStep.h"
 #include "position.h"
 #include "ripple.h"
 
 #include "far_ext/rules/mask.h"
+#include "far_ext/rules/quadPath.h"
 #include "far_ext/topologyRefinerFactory.h"
 #include "far_ext/vtr/hierarchy.h"
 #include "regression/shapes/shapeDescriptor.h"
@@ -16,6 +18,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdio>
 #include <numeric>
 #include <stdexcept>
 
@@ -32,14 +35,13 @@ using FarExt::internal::Level;
 using FarExt::internal::RefinementRules;
 using Position = PositionReal<double>;
 
-constexpr int kQuad = 4;
 constexpr int kHexagon = 6;
+constexpr double kParts = 256;
 constexpr int kNumSearchedLevels = FarExt::kNumStepsToConstantMasks - 1;
 constexpr int kNumFacesOfQuads = 4; // around a regular vertex
 
 /// Of one of the first levels, from 1 on.
 struct LevelWeights {
-    double inQuad[kQuad];
     double atVertex[kHexagon];
     double atNeighbor[kHexagon];
     double besideQuad[FarExt::QuadMask::kNumRows][kHexagon];
@@ -49,7 +51,6 @@ LevelWeights getWeights(SearchedMasks const &searched, int level, FarExt::QuadMa
     IrregularVertexMask const vertex =
         FarExt::ComputeIrregularVertexMask(searched.numFaces, level, searched.facesAround);
     LevelWeights result;
-    std::copy_n(quad.inQuad, kQuad, result.inQuad);
     std::copy_n(vertex.atVertex, kHexagon, result.atVertex);
     std::copy_n(vertex.atNeighbor, kHexagon, result.atNeighbor);
     for (int i = 0; i < FarExt::QuadMask::kNumRows; ++i) {
@@ -89,9 +90,6 @@ void forEachMask(SearchedMasks const &searched, int level, LevelWeights &weights
     }
     if (isSecond) {
         function(weights.besideQuad[1], kHexagon, Places{1, 2, 4, 5}, false);
-    }
-    if (isFirst || isSecond) {
-        function(weights.inQuad, kQuad, Places{1, 2}, true);
     }
 }
 
@@ -169,6 +167,13 @@ CornerWeights findMask(SearchedMasks const &searched, LevelWeights const &weight
     default:
         return {nullptr, false};
     }
+}
+
+/// Whether a path tells the mask of a corner.
+bool hasQuadMask(Level const &level, int corner) {
+    auto const quad = FarExt::internal::FindCornerTags(level.quadCorners, corner, corner + 1);
+    return !quad.empty() &&
+           FarExt::internal::FindQuadRow(level.numHexagonalSteps, quad[0].flags).mask;
 }
 
 /// Faces of a plane around a vertex, lifted by very little to a quadratic form, or to x y.
@@ -287,9 +292,8 @@ private:
                 auto const irregular =
                     FarExt::internal::FindCornerTags(parent.irregularCorners, corner, corner + 1);
                 CornerWeights mask = {nullptr, false};
-                if (ofLevel && size == kQuad && !parent.IsHalfFace(face)) {
-                    mask.weights = ofLevel->inQuad;
-                } else if (ofLevel && !irregular.empty() && irregular[0].weight == 1) {
+                if (ofLevel && !irregular.empty() && irregular[0].weight == 1 &&
+                    !hasQuadMask(parent, corner)) {
                     mask = findMask(_searched, *ofLevel, irregular[0]);
                 }
                 if (!mask.weights) {
@@ -447,58 +451,30 @@ MaskWeights GetPlainWeights(SearchedMasks const &searched) {
     return gather(searched, levels);
 }
 
-MaskWeights SearchWeights(MaskWeights weights, int maxSteps, MaskJudge &judge, int firstFree) {
-    constexpr double kDifference = 1e-5;
-    constexpr double kLargestChange = 0.1;
-    constexpr double kLeastGain = 1e-4;
-    constexpr double kFactor = 5; // of the damping, from one attempt to the next
-    constexpr int kMaxAttempts = 9;
-    double damping = 1e-3;
-    Eigen::VectorXd values = judge.Measure(weights);
-    for (int step = 0; step < maxSteps; ++step) {
-        Eigen::MatrixXd derivatives = Eigen::MatrixXd::Zero(values.size(), weights.size());
-        for (Eigen::Index i = firstFree; i < weights.size(); ++i) {
-            MaskWeights changed = weights;
-            changed[i] += kDifference;
-            derivatives.col(i) = (judge.Measure(changed) - values) / kDifference;
-        }
-        Eigen::MatrixXd const squares = derivatives.transpose() * derivatives;
-        MaskWeights const slope = derivatives.transpose() * values;
-        double const before = values.norm();
-        bool isBetter = false;
-        for (int attempt = 0; attempt < kMaxAttempts && !isBetter; ++attempt, damping *= kFactor) {
-            Eigen::MatrixXd damped = squares;
-            damped.diagonal().array() += damping;
-            MaskWeights right = -slope;
-            for (Eigen::Index i = 0; i < weights.size(); ++i) {
-                if (i < firstFree || (weights[i] <= 0 && slope[i] > 0)) { // stays, or stays at 0
-                    damped.row(i).setZero();
-                    damped.col(i).setZero();
-                    damped(i, i) = 1;
-                    right[i] = 0;
-                }
-            }
-            MaskWeights change = damped.ldlt().solve(right);
-            change *= std::min(1.0, kLargestChange / change.cwiseAbs().maxCoeff());
-            MaskWeights const next = (weights + change).cwiseMax(0);
-            Eigen::VectorXd const nextValues = judge.Measure(next);
-            if (nextValues.norm() < before) {
-                weights = next;
-                values = nextValues;
-                damping /= kFactor * kFactor;
-                isBetter = true;
-            }
-        }
-        if (before - values.norm() < kLeastGain * before) {
-            break;
-        }
+void PrintMasks(SearchedMasks const &searched, MaskWeights const &weights) {
+    SearchedLevels levels = spread(searched, weights);
+    for (int level = 1; level <= kNumSearchedLevels; ++level) {
+        forEachMask(searched, level, levels[std::size_t(level) - 1],
+                    [&](double const *mask, int size, std::vector<int> const &, bool) {
+                        std::printf("level %d: {", level);
+                        for (int i = 0; i < size; ++i) {
+                            std::printf("%s%.0f", i > 0 ? ", " : "", kParts * mask[i]);
+                        }
+                        std::printf("}\n");
+                    });
     }
-    judge.Measure(weights);
-    return weights;
+}
+
+MaskWeights SearchWeights(MaskWeights const &weights, int maxSteps, MaskJudge &judge,
+                          int firstFree) {
+    MaskWeights const found = FindLeastSquares(
+        weights, maxSteps, [&judge](MaskWeights const &tried) { return judge.Measure(tried); },
+        firstFree);
+    judge.Measure(found);
+    return found;
 }
 
 MaskWeights RoundWeights(MaskWeights weights, int maxSteps, MaskJudge &judge) {
-    constexpr double kParts = 256;
     SearchedMasks const &searched = judge.GetSearched();
     SearchedLevels levels = spread(searched, weights);
     Eigen::Index next = 0;

@@ -16,7 +16,7 @@
 namespace OpenSubdivHex::Regression {
 
 /// \brief For which masks of FaceMask::Smooth at the first levels weights are searched for: those of
-/// FarExt::ComputeIrregularVertexMask() for such a vertex, and with four quads around it those of
+/// FarExt::ComputeIrregularVertexMask() for such a vertex, and with four quads around it those beside quads of
 /// FarExt::ComputeQuadMask(), too.
 struct SearchedMasks {
     int numFaces;
@@ -79,12 +79,12 @@ private:
     std::vector<std::unique_ptr<Surface>> _surfaces;
 };
 
-/// \brief Weights for which the norm of what \p judge measures is smaller than for \p weights: by
-/// Levenberg and Marquardt's method, with weights kept from falling below 0.
-///
-/// \param maxSteps   it ends before where steps gain nothing
-/// \param firstFree  those before it stay as they are
-MaskWeights SearchWeights(MaskWeights weights, int maxSteps, MaskJudge &judge, int firstFree = 0);
+/// Prints the masks that the weights are of, in 256ths: one on a line, level after level, as mask.cpp has them.
+void PrintMasks(SearchedMasks const &searched, MaskWeights const &weights);
+
+/// FindLeastSquares() of what \p judge measures.
+MaskWeights SearchWeights(MaskWeights const &weights, int maxSteps, MaskJudge &judge,
+                          int firstFree = 0);
 
 /// \brief Rounded to 256ths, level after level: those of the next are searched for again when one is
 /// rounded.

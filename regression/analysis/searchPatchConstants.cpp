@@ -6,8 +6,9 @@
 // with the least sum, over the meshes, of the mean squares of distances and of angles between normals, each in
 // terms of what it is by the defaults.  A small share is for how far constants are from these, so that those that
 // matter little stay.  The method is Levenberg's and Marquardt's, with differences for derivatives.  None of the
-// meshes is one of those that patchErrors prints.  Takes some minutes; the argument is a number of steps, or none
-// for all.
+// meshes is one of those that patchErrors prints.
+#include "searchPatchConstants.h"
+
 #include "patchSamples.h"
 
 #include "far_ext/executor.h"
@@ -22,7 +23,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <cstdlib>
 #include <deque>
 #include <map>
 #include <random>
@@ -40,7 +40,6 @@ using FarExt::internal::PatchSite;
 
 namespace {
 
-constexpr int kMaxSteps = 2; // later ones have the defaults
 constexpr std::size_t kMaxNumSamples = 2500;
 constexpr double kDegrees = 180 / 3.14159265358979323846; // in a radian
 
@@ -198,11 +197,11 @@ public:
         }
         double const normals = numbers.squaredNorm() - distances;
         auto const number = double(_numSamples);
-        std::fprintf(stderr, "  %-24s distance %.2f, of %.2f; normals %.3f, of %.3f\n",
-                     _name.c_str(), 1e6 * std::sqrt(distances * _squares[0] / number),
-                     1e6 * std::sqrt(_squares[0] / number),
-                     kDegrees * std::sqrt(normals * _squares[1] / number),
-                     kDegrees * std::sqrt(_squares[1] / number));
+        std::printf("  %-24s distance %.2f, of %.2f; normals %.3f, of %.3f\n", _name.c_str(),
+                    1e6 * std::sqrt(distances * _squares[0] / number),
+                    1e6 * std::sqrt(_squares[0] / number),
+                    kDegrees * std::sqrt(normals * _squares[1] / number),
+                    kDegrees * std::sqrt(_squares[1] / number));
     }
 
 private:
@@ -292,15 +291,15 @@ public:
         for (std::size_t i = 0; i < _sites.size(); ++i) {
             _values[Eigen::Index(i)] = PatchConstants::GetDefault(_sites[i]);
         }
-        std::fprintf(stderr, "%d steps: %d sites\n", steps, int(_sites.size()));
+        std::printf("%d sites; sum of squares %.4f in the library, %.4f where the search begins\n",
+                    int(_sites.size()), sum(getShipped()), sum(_values));
     }
 
-    void Run() {
-        constexpr int kMaxRounds = 8;
+    void Run(int maxRounds) {
         constexpr double kEnough = 3e-3; // of the sum
         double damping = 1e-3;
         double current = sum(_values);
-        for (int round = 0; round < kMaxRounds; ++round) {
+        for (int round = 0; round < maxRounds; ++round) {
             Eigen::MatrixXd matrix;
             Eigen::VectorXd gradient;
             linearize(matrix, gradient);
@@ -317,7 +316,7 @@ public:
                     damping *= 10;
                 }
             }
-            std::fprintf(stderr, "  round %d: %.4f\n", round, next);
+            std::printf("  round %d: %.4f\n", round, next);
             bool const isEnough = current - next < kEnough * current;
             current = std::min(current, next);
             if (isEnough) {
@@ -331,6 +330,10 @@ public:
 
     // Those that are no defaults.
     void Print() const {
+        Eigen::VectorXd const apart = _values - getShipped();
+        std::printf(
+            "apart from the library's by %.3f, the root of the mean square, and %.3f at most\n",
+            std::sqrt(apart.squaredNorm() / double(apart.size())), apart.cwiseAbs().maxCoeff());
         constexpr double kUnit = 0.005;
         char const *const quantities[] = {"kLength", "kBlend", "kEdgeShare", "kDiagonalShare"};
         char const *const kinds[] = {"kEdge",      "kDiagonal", "kLongBoundary",
@@ -351,6 +354,13 @@ public:
     }
 
 private:
+    Eigen::VectorXd getShipped() const {
+        PatchConstants const shipped(FarExt::FaceMask::Smooth);
+        Eigen::VectorXd values = _values;
+        std::transform(_sites.begin(), _sites.end(), values.begin(),
+                       [&shipped](PatchSite const &site) { return shipped.Get(site); });
+        return values;
+    }
     PatchConstants makeConstants(Eigen::VectorXd const &values) const {
         PatchConstants constants(FarExt::FaceMask::Average);
         for (std::size_t i = 0; i < _sites.size(); ++i) {
@@ -421,19 +431,9 @@ private:
 
 } // namespace
 
-int main(int argc, char **argv) {
-    int const wanted = argc > 1 ? int(std::strtol(argv[1], nullptr, 10)) : -1;
-    if (argc > 2 || wanted < -1 || wanted > kMaxSteps) {
-        std::fprintf(stderr, "usage: searchPatchConstants [STEPS]\n");
-        return 2;
-    }
+void Regression::SearchPatchConstants(int steps, int maxRounds) {
     FarExt::SetNumThreads(1); // PatchConstants::Record
-    for (int steps = 0; steps <= kMaxSteps; ++steps) {
-        if (wanted < 0 || wanted == steps) {
-            Search search(steps);
-            search.Run();
-            search.Print();
-        }
-    }
-    return 0;
+    Search search(steps);
+    search.Run(maxRounds);
+    search.Print();
 }

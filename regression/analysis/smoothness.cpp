@@ -90,6 +90,10 @@ Smoothness MeasureSmoothness(PolygonMesh const &mesh) {
     return smoothness;
 }
 
+std::vector<int> FindNearVertices(PolygonMesh const &mesh, int vertex) {
+    return addRing(mesh, findNeighbors(mesh, vertex));
+}
+
 std::array<double, 2> EstimateCurvatures(PolygonMesh const &mesh, int vertex) {
     Vector3d normal = Vector3d::Zero();
     for (int k = mesh.vertexFirst[vertex]; k < mesh.vertexFirst[vertex + 1]; ++k) {
@@ -100,7 +104,7 @@ std::array<double, 2> EstimateCurvatures(PolygonMesh const &mesh, int vertex) {
     Vector3d const yAxis = normal.cross(xAxis);
 
     // z = a + b x + c y + d x^2 + e x y + f y^2, in units of the neighbourhood's size.
-    std::vector<int> const points = addRing(mesh, findNeighbors(mesh, vertex));
+    std::vector<int> const points = FindNearVertices(mesh, vertex);
     double size = 0;
     for (int point : points) {
         size = std::max(size, (mesh.positions[point] - mesh.positions[vertex]).norm());

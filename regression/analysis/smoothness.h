@@ -21,11 +21,13 @@ struct Smoothness {
 /// Of all interior edges of \p mesh.  A face's normal is that of its vector area.
 Smoothness MeasureSmoothness(PolygonMesh const &mesh);
 
+/// The vertices of the faces that touch \p vertex or a neighbour of it, \p vertex first.
+std::vector<int> FindNearVertices(PolygonMesh const &mesh, int vertex);
+
 /// \brief The principal curvatures of a mesh near one of its vertices, the smaller first.
 ///
-/// Those, at the vertex, of the quadratic that fits best the vertices of all faces which touch the
-/// vertex or a neighbour of it, over the plane through the vertex whose normal is the mean of those
-/// of its faces.
+/// Those, at the vertex, of the quadratic that fits best the FindNearVertices(), over the plane through the
+/// vertex whose normal is the mean of those of its faces.
 std::array<double, 2> EstimateCurvatures(PolygonMesh const &mesh, int vertex);
 
 /// \brief The largest modulus of a principal curvature at the vertices of the faces that touch the

@@ -17,13 +17,16 @@ using FacePlace = std::array<double, 2>;
 
 /// (u, v) of the place that is so far from the centre of a face towards the start and the end of an edge.
 inline FacePlace MakeFacePlace(int faceSize, int edge, double toStart, double toEnd) {
-    return FarExt::internal::FindFaceCoords(FarExt::internal::BasePolygon(faceSize), edge,
+    return FarExt::internal::FindFaceCoords(BfrExt::Parameterization(faceSize),
+                                            FarExt::internal::BasePolygon(faceSize), edge,
                                             {toStart, toEnd});
 }
 
 /// The place in the plane of the face of (u, v).
 inline FacePlace ToPlane(int faceSize, double const uv[2]) {
-    return FarExt::internal::FindInPlane(BfrExt::Parameterization(faceSize), {uv[0], uv[1]}).coords;
+    FacePlace result;
+    BfrExt::Parameterization(faceSize).ConvertToPlane(uv, result.data());
+    return result;
 }
 
 /// (u, v) of a place in the plane of the face, which is inside.

@@ -25,6 +25,7 @@ namespace OpenSubdivHex::Regression::ratesTest {
 
 namespace Bfr = OpenSubdiv::Bfr;
 
+using BfrExt::LevelTessellation;
 using BfrExt::Parameterization;
 using BfrExt::Surface;
 
@@ -185,6 +186,52 @@ TEST(Parameterization, LeadsToThePlaneAndBack) {
         }
         EXPECT_EQ(MakeFacePlace(size, 0, 0, 0.25), MakeFacePlace(size, 1, 0.25, 0));
     }
+}
+
+// Of all sizes, and of a triangle with sub-faces, as Catmull-Clark's scheme has it.
+TEST(Parameterization, ItsPlaneIsThatOfTessellations) {
+    for (int size = 3; size < 12; ++size) {
+        Parameterization const parameterization(size);
+        LevelTessellation const tessellation(parameterization, 3);
+        auto const numCoords = std::size_t(tessellation.GetNumCoords());
+        std::vector<double> coords(2 * numCoords);
+        std::vector<double> inPlane(2 * numCoords);
+        tessellation.GetCoords(coords.data());
+        tessellation.GetPlaneCoords(inPlane.data());
+        for (std::size_t i = 0; i < coords.size(); i += 2) {
+            double found[2];
+            parameterization.ConvertToPlane(&coords[i], found);
+            EXPECT_NEAR(found[0], inPlane[i], 1e-12) << size;
+            EXPECT_NEAR(found[1], inPlane[i + 1], 1e-12) << size;
+        }
+    }
+    for (Parameterization const &parameterization :
+         {Parameterization(3), Parameterization(4), Parameterization(5), Parameterization(9),
+          Parameterization(Bfr::Parameterization(OpenSubdiv::Sdc::SCHEME_CATMARK, 3))}) {
+        int const size = parameterization.GetFaceSize();
+        auto const subFaces = std::size_t(parameterization.HasSubFaces() ? size : 1);
+        for (std::size_t subFace = 0; subFace < subFaces; ++subFace) {
+            double sub[2] = {0.3, 0.6};
+            double uv[2] = {0.3, 0.6};
+            if (parameterization.HasSubFaces()) {
+                parameterization.ConvertNormalizedSubFaceToCoord(int(subFace), sub, uv);
+            }
+            double coords[2];
+            double back[2];
+            parameterization.ConvertToPlane(uv, coords);
+            parameterization.ConvertFromPlane(coords, back);
+            EXPECT_NEAR(back[0], uv[0], 1e-12) << size;
+            EXPECT_NEAR(back[1], uv[1], 1e-12) << size;
+        }
+    }
+    // What is outside comes to the boundary, towards the centre.
+    double const below[2] = {0.5, -3};
+    double uv[2];
+    double middle[2];
+    Parameterization(6).ConvertFromPlane(below, uv);
+    Parameterization(6).GetEdgeCoord(0, 0.5, middle);
+    EXPECT_NEAR(uv[0], middle[0], 1e-12);
+    EXPECT_NEAR(uv[1], middle[1], 1e-12);
 }
 
 TEST(Parameterization, HasItsDerivativesInThePlane) {

@@ -327,7 +327,7 @@ TEST_P(ReferenceDerivativeTest, DerivativesAreThoseOfTheReference) {
                 double const distance = GetDistance(found, wanted) / GetLength(wanted);
                 largest = GetLarger(largest, distance);
                 sum += distance / 2;
-                ASSERT_LE(distance, 0.022) << "face " << place.baseFace << " at "
+                ASSERT_LE(distance, 0.026) << "face " << place.baseFace << " at "
                                            << place.inPlane[0] << ", " << place.inPlane[1];
             }
         }
@@ -336,10 +336,12 @@ TEST_P(ReferenceDerivativeTest, DerivativesAreThoseOfTheReference) {
               << sum / numPlaces << " on average; of second derivatives " << largestOfSecond
               << " and " << sumOfSecond / numPlaces << '\n';
     EXPECT_GT(numPlaces, 60);
-    EXPECT_LE(sum, 0.001 * numPlaces);
-    // Those of a fit are off by as much as they change over its points, which lie in a 32nd of the face: .3 and .05.
-    EXPECT_LE(largestOfSecond, 0.4);
-    EXPECT_LE(sumOfSecond, 0.06 * numPlaces);
+    // Those of a fit are off by as much as they change over its points, which lie in a 32nd of the face: second ones by .3
+    // and .05, and more where quads have a mask for each place.
+    double const factor = GetParam() == ReferenceMask::Smooth ? 3 : 1;
+    EXPECT_LE(sum, 0.001 * factor * numPlaces);
+    EXPECT_LE(largestOfSecond, 0.4 * factor);
+    EXPECT_LE(sumOfSecond, 0.06 * factor * numPlaces);
 }
 
 namespace {

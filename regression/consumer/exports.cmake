@@ -5,11 +5,11 @@
 # Checks that a shared library exports its public API, of which public is a part of a mangled name,
 # and of what is internal no more than the inline code of public headers and other layers call.
 set(called AllocateArray FreeArray PrepareArray RangeQueue ForEachRange Report InsertUnique SortUnique
-  RefinementRules GetRules FaceRule TruncationMask
+  RefinementRules GetRules FaceRule TruncationMask FindQuadRow
   LimitRows CheckLimitLevel LimitOrigins LatticePatch LatticeFaces PlainFaces
   RegularFaces MakeFaceParameterization FindInPlane FindFaceCoords FindCellPatchPoints
   GetStepsToLimit GatherBaseCell FindBaseCellTurns GatherBorder RefineCell
-  UseNextMasks ComesApart GatherFanItems FindCornerLimits PatchRefinement GetVertexMarks StepRowBack MakePlainBaseCell IndexMap
+  UseNextMasks ComesApart GatherFanItems FindCornerLimits PatchRefinement GetVertexMarks StepRowBack MakePlainBaseCell IndexMap MakeQuadFlag
   Device MakeDeviceLimit MakeDeviceRefinements
   CheckChannel CheckStencilMode GetChannelInterpolation GetModeInterpolation
   CheckLevel CheckDescriptors)

@@ -4,6 +4,7 @@
 #include "expectations.h"
 
 #include "regression/shapes/featureShapes.h"
+#include "regression/shapes/meshOperations.h"
 #include "regression/shapes/shapeDescriptor.h"
 
 #include <gtest/gtest.h>
@@ -71,6 +72,15 @@ TEST_F(Feature, PlainShapesEqualReference) {
     forEach(GetShapes(), [](Shape const &shape, Sdc::Options options) {
         ExpectMeshEqual(shape, GetTestLevel(shape, 4, 16000), options);
     });
+}
+
+// Quads around vertices of three, four, five and six, in all steps with masks of their own.
+TEST_F(Feature, QuadsEqualReference) {
+    for (Shape const &shape : {MakeOrtho("quads of an icosahedron", MakeIcosahedron()),
+                               MakeOrtho("quads of a bipyramid", MakeBipyramid(6))}) {
+        SCOPED_TRACE(shape.name);
+        ExpectMeshEqual(shape, 4, Sdc::Options());
+    }
 }
 
 TEST_F(Feature, FaceVaryingEqualsReference) {

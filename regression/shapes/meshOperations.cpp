@@ -131,6 +131,36 @@ Shape MakeDual(std::string name, Shape const &shape) {
     return dual;
 }
 
+Shape MakeOrtho(std::string name, Shape const &shape) {
+    Shape ortho;
+    ortho.name = std::move(name);
+    ortho.positions = shape.positions;
+    std::vector<double> const centres = faceCentres(shape);
+    ortho.positions.insert(ortho.positions.end(), centres.begin(), centres.end());
+    int const numVertices = int(shape.positions.size() / 3);
+    std::map<DirectedEdge, int> middles;
+    auto const findMiddle = [&](int v, int w) {
+        DirectedEdge const edge = {std::min(v, w), std::max(v, w)};
+        auto const [found, isNew] = middles.try_emplace(edge, int(ortho.positions.size() / 3));
+        for (int k = 0; isNew && k < 3; ++k) {
+            ortho.positions.push_back((shape.positions[3 * v + k] + shape.positions[3 * w + k]) /
+                                      2);
+        }
+        return found->second;
+    };
+    int first = 0;
+    for (int face = 0; face < int(shape.faceSizes.size()); ++face) {
+        int const size = shape.faceSizes[face];
+        auto const getVertex = [&](int i) { return shape.faceVertices[first + i % size]; };
+        for (int i = 0; i < size; ++i) {
+            addFace(ortho, {getVertex(i), findMiddle(getVertex(i), getVertex(i + 1)),
+                            numVertices + face, findMiddle(getVertex(i + size - 1), getVertex(i))});
+        }
+        first += size;
+    }
+    return ortho;
+}
+
 Shape MakeTruncated(std::string name, Shape const &shape) {
     Shape truncated;
     truncated.name = std::move(name);

@@ -19,6 +19,9 @@ Shape MakeTruncated(std::string name, Shape const &shape);
 /// Cuts the edges of the closed \p shape: a smaller copy of each face, a hexagon for each edge.
 Shape MakeChamfered(std::string name, Shape const &shape);
 
+/// A quad for each corner of the closed \p shape, from the corner to the middles of the edges and the centre of the face.
+Shape MakeOrtho(std::string name, Shape const &shape);
+
 /// Both shapes in one, \p second moved by \p offset along x.
 Shape MakeUnion(std::string name, Shape const &first, Shape const &second, double offset);
 

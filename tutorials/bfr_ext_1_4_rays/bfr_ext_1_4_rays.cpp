@@ -60,28 +60,35 @@ struct Arguments {
     View view;
 };
 
+/// Writes the facets of a tessellation, with memory for their points.
+void setFacets(Bfr::Tessellation const &tessellation, FaceFacets *face) {
+    face->parameterization = BfrExt::Parameterization(tessellation.GetParameterization());
+    face->coords.resize(2 * std::size_t(tessellation.GetNumCoords()));
+    tessellation.GetCoords(face->coords.data());
+    for (std::size_t i = 0; i < face->coords.size(); i += 2) {
+        face->parameterization.ConvertToPlane(&face->coords[i], &face->coords[i]);
+    }
+    face->facets.resize(3 * std::size_t(tessellation.GetNumFacets()));
+    tessellation.GetFacets(face->facets.data());
+    face->points.resize(3 * std::size_t(tessellation.GetNumCoords()));
+}
+
 /// Cuts a face by a rate for all edges.
 void tessellate(BfrExt::Surface<float> const &surface, int rate, float const *controlPoints,
                 FaceFacets *face) {
     Bfr::Tessellation const tessellation(surface.GetParameterization(), rate);
-    face->coords.resize(2 * std::size_t(tessellation.GetNumCoords()));
-    tessellation.GetCoords(face->coords.data());
-    face->facets.resize(3 * std::size_t(tessellation.GetNumFacets()));
-    tessellation.GetFacets(face->facets.data());
-    face->points.resize(3 * std::size_t(tessellation.GetNumCoords()));
+    setFacets(tessellation, face);
     surface.Evaluate(tessellation, controlPoints, 3, face->points.data(), 3);
 }
 
 void tessellate(Bfr::Surface<float> const &surface, int rate, float const *patchPoints,
                 FaceFacets *face) {
     Bfr::Tessellation const tessellation(surface.GetParameterization(), rate);
-    face->coords.resize(2 * std::size_t(tessellation.GetNumCoords()));
-    tessellation.GetCoords(face->coords.data());
-    face->facets.resize(3 * std::size_t(tessellation.GetNumFacets()));
-    tessellation.GetFacets(face->facets.data());
-    face->points.resize(3 * std::size_t(tessellation.GetNumCoords()));
+    setFacets(tessellation, face);
+    std::vector<float> coords(2 * std::size_t(tessellation.GetNumCoords()));
+    tessellation.GetCoords(coords.data());
     for (std::size_t i = 0; i < std::size_t(tessellation.GetNumCoords()); ++i) {
-        surface.Evaluate(&face->coords[2 * i], patchPoints, 3, &face->points[3 * i]);
+        surface.Evaluate(&coords[2 * i], patchPoints, 3, &face->points[3 * i]);
     }
 }
 

@@ -79,17 +79,20 @@ FacetScene::Hit FacetScene::Intersect(Vec3 origin, Vec3 direction) const {
     }
     hit.face = int(ray.hit.geomID);
     hit.point = origin + ray.ray.tfar * direction;
-    // In a facet, u and v are linear: Embree says how much of each corner there is.
+    // Embree says how much of each corner there is.  These have a mean in the plane of the face: faces of five and
+    // more sides have sub-faces, between which there is none of u and v.
     FaceFacets const &face = _faces[ray.hit.geomID];
     int const *const corners = &face.facets[3 * std::size_t(ray.hit.primID)];
     float const weights[3] = {1 - ray.hit.u - ray.hit.v, ray.hit.u, ray.hit.v};
+    float mean[2] = {0, 0};
     for (int i = 0; i < 3; ++i) {
-        float const *const uv = &face.coords[2 * std::size_t(corners[i])];
-        hit.uv[0] += weights[i] * uv[0];
-        hit.uv[1] += weights[i] * uv[1];
+        float const *const coords = &face.coords[2 * std::size_t(corners[i])];
+        mean[0] += weights[i] * coords[0];
+        mean[1] += weights[i] * coords[1];
         hit.side = std::max(hit.side, Length(GetVec3(face.points.data(), corners[(i + 1) % 3]) -
                                              GetVec3(face.points.data(), corners[i])));
     }
+    face.parameterization.ConvertFromPlane(mean, hit.uv);
     return hit;
 }
 

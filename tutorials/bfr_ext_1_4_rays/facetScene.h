@@ -2,6 +2,7 @@
 #ifndef OPENSUBDIVHEX_TUTORIALS_FACET_SCENE_H
 #define OPENSUBDIVHEX_TUTORIALS_FACET_SCENE_H
 
+#include "bfr_ext/parameterization.h"
 #include "tools/render/vec3.h"
 
 #include <memory>
@@ -14,7 +15,8 @@ namespace OpenSubdivHex::Tools {
 
 /// A face of a mesh, cut into triangles.
 struct FaceFacets {
-    std::vector<float> coords; ///< u and v of each point
+    BfrExt::Parameterization parameterization;
+    std::vector<float> coords; ///< of each point, two in the plane of the parameterization
     std::vector<float> points; ///< x y z
     std::vector<int> facets;   ///< three points each; none where the face is a hole
 };
