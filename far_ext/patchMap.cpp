@@ -30,16 +30,17 @@ Point operator*(double s, Point a) { return {s * a.u, s * a.v}; }
 double cross(Point a, Point b) { return a.u * b.v - a.v * b.u; }
 Point middle(Point a, Point b) { return 0.5 * (a + b); }
 
-// A cell in the plane of its face: a half of a hexagon, or half face, has its long side first.
+// A cell in the plane of its face: a half has its long side first.
 struct Polygon {
     std::vector<Point> corners;
-    bool isHalf;
+    int centerEnd; // as FindCenterEnd() has it
 
+    bool IsHalf() const { return centerEnd == 1; }
     Point GetCorner(std::size_t i) const { return corners[i % corners.size()]; }
     // Where children meet, and what they shrink towards.
     Point FindCenter() const {
-        if (isHalf) {
-            return middle(corners[0], corners[1]);
+        if (centerEnd > 0) {
+            return middle(corners[0], corners[std::size_t(centerEnd)]);
         }
         Point sum = {0, 0};
         for (Point const &corner : corners) {
@@ -47,12 +48,22 @@ struct Polygon {
         }
         return 1.0 / double(corners.size()) * sum;
     }
+    // Where kites meet: in a half at a third of the line from its long side to what is across.
+    Point FindCenterOfKites() const {
+        Point const center = FindCenter();
+        if (!IsHalf()) {
+            return center;
+        }
+        std::size_t const numCorners = corners.size();
+        Point const across = middle(corners[(numCorners + 1) / 2], corners[numCorners / 2 + 1]);
+        return center + 1.0 / 3 * (across - center);
+    }
 };
 
-Polygon makeFace(int size) {
+Polygon makeFace(int size, int centerEnd) {
     internal::BasePolygon const base(size);
     std::array<double, 2> const center = base.GetCenter();
-    Polygon polygon = {{}, false};
+    Polygon polygon = {{}, centerEnd};
     for (int i = 0; i < size; ++i) {
         std::array<double, 2> const corner = base.GetCorner(i);
         polygon.corners.push_back({center[0] + corner[0], center[1] + corner[1]});
@@ -69,12 +80,13 @@ int findChild(Polygon const &cell, Point place, Polygon &child) {
         inner.push_back(middle(corner, center));
     }
     // The edge in whose sector it lies: at the place where it crosses from the right of a spoke to the left.
-    std::size_t edge = cell.isHalf ? 1 : 0;
+    bool const isHalf = cell.IsHalf();
+    std::size_t edge = isHalf ? 1 : 0;
     for (std::size_t i = edge; i < size; ++i) {
         bool const isLeft = cross(cell.corners[i] - center, place - center) >= 0;
         bool const isRight = cross(cell.GetCorner(i + 1) - center, place - center) <= 0;
-        bool const isLast = cell.isHalf && i + 1 == size;
-        bool const isFirst = cell.isHalf && i == 1;
+        bool const isLast = isHalf && i + 1 == size;
+        bool const isFirst = isHalf && i == 1;
         if ((isLeft || isFirst) && (isRight || isLast)) {
             edge = i;
             break;
@@ -82,16 +94,16 @@ int findChild(Polygon const &cell, Point place, Polygon &child) {
     }
     std::size_t const next = (edge + 1) % size;
     if (cross(inner[next] - inner[edge], place - inner[edge]) >= 0) {
-        child = {inner, cell.isHalf};
+        child = {inner, cell.centerEnd};
         return 0;
     }
-    child = {{cell.corners[edge], cell.corners[next], inner[next], inner[edge]}, true};
+    child = {{cell.corners[edge], cell.corners[next], inner[next], inner[edge]}, 1};
     return 1 + int(edge);
 }
 
 // The corner whose kite has a place.
 int findKite(Polygon const &face, Point place) {
-    Point const center = face.FindCenter();
+    Point const center = face.FindCenterOfKites();
     std::size_t const size = face.corners.size();
     for (std::size_t i = 0; i < size; ++i) {
         Point const before = middle(face.GetCorner(i + size - 1), face.corners[i]);
@@ -107,28 +119,6 @@ int findKite(Polygon const &face, Point place) {
 Point evaluate(std::array<double, 8> const &q, double s, double t) {
     auto const at = [&](std::size_t i) { return Point{q[2 * i], q[2 * i + 1]}; };
     return (1 - t) * ((1 - s) * at(0) + s * at(1)) + t * ((1 - s) * at(3) + s * at(2));
-}
-
-// The sector of the polygon that has a place, or is nearest, and where it is there.
-internal::SectorPoint findSectorPoint(internal::BasePolygon const &polygon, Point place,
-                                      int &sector) {
-    auto const [centerU, centerV] = polygon.GetCenter();
-    Point const fromCenter = place - Point{centerU, centerV};
-    internal::SectorPoint best;
-    for (int i = 0; i < polygon.GetSize(); ++i) {
-        auto const [startU, startV] = polygon.GetCorner(i);
-        auto const [endU, endV] = polygon.GetCorner((i + 1) % polygon.GetSize());
-        Point const start = {startU, startV};
-        Point const end = {endU, endV};
-        double const determinant = cross(start, end);
-        internal::SectorPoint const point = {cross(fromCenter, end) / determinant,
-                                             cross(start, fromCenter) / determinant};
-        if (i == 0 || std::min(point.a, point.b) > std::min(best.a, best.b)) {
-            best = point;
-            sector = i;
-        }
-    }
-    return best;
 }
 
 // Newton's method: the quadrilaterals are convex, and not far from parallelograms.
@@ -184,6 +174,7 @@ private:
 
     void addCell(TopologyLevel const &level, internal::PatchCell const &cell) {
         int const size = level.GetFaceVertices(cell.face).size();
+        internal::FaceCells const cells = internal::FindFaceCells(level.GetLevel(), cell.face);
         Patch patch{level.GetFaceSurfaceFace(cell.face, cell.half),
                     level.GetFaceBaseFace(cell.face, cell.half),
                     {}};
@@ -192,11 +183,13 @@ private:
                                  internal::CoordsOf::Plane, uv.data());
         // A hexagon in two faces has only the vertices of the half.
         bool const isWhole =
-            HasHalves(size) && level.GetFaceSurfaceFace(cell.face, 1 - cell.half) == patch.face;
-        auto const getCorner = [&](int corner) {
-            auto const i = std::size_t(isWhole ? kHexagonHalves[cell.half][corner] : corner);
-            return Point{uv[2 * i], uv[2 * i + 1]};
-        };
+            cells.IsCut() && level.GetFaceSurfaceFace(cell.face, 1 - cell.half) == patch.face;
+        int const numCorners = cells.GetNumCorners(cell.half);
+        Polygon polygon = {{}, internal::IsHalfCell(level.GetLevel(), cell) ? 1 : 0};
+        for (int corner = 0; corner < numCorners; ++corner) {
+            auto const i = std::size_t(isWhole ? cells.GetLocal(cell.half, corner) : corner);
+            polygon.corners.push_back({uv[2 * i], uv[2 * i + 1]});
+        }
         auto const add = [&](std::array<Point, 4> const &corners) {
             for (std::size_t i = 0; i < corners.size(); ++i) {
                 patch.coords[2 * i] = corners[i].u;
@@ -204,19 +197,15 @@ private:
             }
             _map._patches.push_back(patch);
         };
-        if (!internal::HasKites(size)) {
-            add({getCorner(0), getCorner(1), getCorner(2), getCorner(3)});
+        if (!internal::HasKites(numCorners)) {
+            add({polygon.corners[0], polygon.corners[1], polygon.corners[2], polygon.corners[3]});
             return;
         }
-        Polygon face = {{}, false};
-        for (int i = 0; i < size; ++i) {
-            face.corners.push_back(getCorner(i));
-        }
-        Point const center = face.FindCenter();
-        for (int i = 0; i < size; ++i) {
-            Point const corner = getCorner(i);
-            add({corner, middle(corner, getCorner((i + 1) % size)), center,
-                 middle(getCorner((i + size - 1) % size), corner)});
+        Point const center = polygon.FindCenterOfKites();
+        for (std::size_t i = 0; i < polygon.corners.size(); ++i) {
+            Point const corner = polygon.corners[i];
+            add({corner, middle(corner, polygon.GetCorner(i + 1)), center,
+                 middle(polygon.GetCorner(i + polygon.corners.size() - 1), corner)});
         }
     }
 
@@ -225,20 +214,20 @@ private:
         Level const &level = _mesh.levels[std::size_t(depth)];
         int const size = level.GetFaceSize(cell.face);
         bool const isCut = HasHalves(size) && !isWhole;
-        Node node = {Far::INDEX_INVALID, Far::INDEX_INVALID};
-        bool const hasPatches =
-            depth >= _cells.GetFirstLevel() &&
-            (_cells.HasCell(depth, cell.face, isCut ? cell.half : 0) ||
-             (isWhole && HasHalves(size) && _cells.HasCell(depth, cell.face, 1)));
+        Node node = {Far::INDEX_INVALID, {Far::INDEX_INVALID, Far::INDEX_INVALID}};
+        bool const hasPatches = depth >= _cells.GetFirstLevel() &&
+                                (_cells.HasCell(depth, cell.face, isCut ? cell.half : 0) ||
+                                 (isWhole && _cells.HasCell(depth, cell.face, 1)));
         if (hasPatches || depth == _cells.GetLastLevel()) {
-            std::size_t const first =
-                2 * std::size_t(cell.face) + std::size_t(isCut ? cell.half : 0);
-            node.firstPatch = _firsts[std::size_t(depth)][first];
+            Index const *const firsts =
+                _firsts[std::size_t(depth)].data() + 2 * std::size_t(cell.face);
+            node.firstPatches[0] = firsts[isCut ? cell.half : 0];
+            node.firstPatches[1] = firsts[1];
             return node;
         }
         std::vector<Node> children = {makeNode(depth + 1, cell, isWhole)};
         for (int local = 0; local < size; ++local) {
-            bool const isLong = !isWhole && !isCut && local == kHalfFaceLongEdge;
+            bool const isLong = level.IsHalfFace(cell.face) && local == kHalfFaceLongEdge;
             if (isLong || (isCut && GetHalfOfEdge(local) != cell.half)) {
                 continue; // of half faces the border, and what the other half has
             }
@@ -272,7 +261,7 @@ PatchMap::PatchMap(TopologyRefiner const &refiner, PatchTableFactory::Options op
     Level const &surface =
         refiner.GetLevel(refiner.GetHexSchemeOptions().GetSurfaceLevel()).GetLevel();
     for (Index face = 0; face < surface.numFaces; ++face) {
-        _faceSizes.push_back(surface.GetFaceSize(face));
+        _faces.push_back({surface.GetFaceSize(face), internal::FindCenterEnd(surface, face)});
     }
     TreeBuilder(*this, refiner, *cells);
 }
@@ -282,30 +271,41 @@ auto PatchMap::FindPlace(Index face, double u, double v) const -> Place {
     if (face < 0 || face >= GetNumFaces() || !std::isfinite(u) || !std::isfinite(v)) {
         return place;
     }
-    int const faceSize = _faceSizes[std::size_t(face)];
+    auto const [faceSize, centerEnd] = _faces[std::size_t(face)];
     auto const coords =
         internal::FindInPlane(internal::MakeFaceParameterization(faceSize), {u, v}).coords;
     Point const wanted = {coords[0], coords[1]};
-    Polygon cell = makeFace(faceSize);
+    Polygon cell = makeFace(faceSize, centerEnd);
     Node node = _roots[std::size_t(face)];
     while (node.firstChild != Far::INDEX_INVALID) {
         Polygon child;
         int const i = findChild(cell, wanted, child);
         // A half has its long side first, and no child there.
-        int const numBefore = cell.isHalf && i > 0 ? i - 1 : i;
+        int const numBefore = cell.IsHalf() && i > 0 ? i - 1 : i;
         node = _children[std::size_t(node.firstChild) + std::size_t(numBefore)];
         cell = std::move(child);
     }
-    if (node.firstPatch == Far::INDEX_INVALID) {
-        return place;
-    }
-    place.patch = node.firstPatch;
+    int half = 0;
     auto const size = int(cell.corners.size());
-    if (HasHalves(size)) {
+    internal::FaceCells const cells = {size, cell.centerEnd > 1 ? cell.centerEnd
+                                             : cell.centerEnd == 0 && HasHalves(size) ? kDiagonalEnd
+                                                                                      : 0};
+    if (cells.IsCut()) {
         // Half 0 lies to the left of the diagonal.
         Point const start = cell.corners[kDiagonalStart];
-        place.patch += cross(cell.corners[kDiagonalEnd] - start, wanted - start) < 0 ? 1 : 0;
-    } else if (internal::HasKites(size)) {
+        Point const end = cell.corners[std::size_t(cells.diagonalEnd)];
+        half = cross(end - start, wanted - start) < 0 ? 1 : 0;
+        Polygon ofHalf = {{}, 1};
+        for (int i = 0; i < cells.GetNumCorners(half); ++i) {
+            ofHalf.corners.push_back(cell.corners[std::size_t(cells.GetLocal(half, i))]);
+        }
+        cell = std::move(ofHalf);
+    }
+    if (node.firstPatches[half] == Far::INDEX_INVALID) {
+        return place;
+    }
+    place.patch = node.firstPatches[half];
+    if (internal::HasKites(int(cell.corners.size()))) {
         place.patch += findKite(cell, wanted);
     }
     invert(GetCoords(place.patch), wanted, place.s, place.t);
@@ -314,13 +314,15 @@ auto PatchMap::FindPlace(Index face, double u, double v) const -> Place {
 
 void PatchMap::GetFacePlace(Place const &place, double *u, double *v) const {
     Point const point = evaluate(GetCoords(place.patch), place.s, place.t);
-    int const size = _faceSizes[std::size_t(GetFace(place.patch))];
+    int const size = _faces[std::size_t(GetFace(place.patch))].size;
     std::array<double, 2> uv = {point.u, point.v};
     auto const parameterization = internal::MakeFaceParameterization(size);
     if (parameterization.HasSubFaces()) {
         int sector = 0;
         internal::BasePolygon const polygon(size);
-        internal::SectorPoint const inSector = findSectorPoint(polygon, point, sector);
+        auto const [centerU, centerV] = polygon.GetCenter();
+        internal::SectorPoint const inSector =
+            polygon.FindSectorPoint({point.u - centerU, point.v - centerV}, sector);
         uv = internal::FindFaceCoords(parameterization, polygon, sector, inSector);
     }
     *u = uv[0];

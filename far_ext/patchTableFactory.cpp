@@ -82,20 +82,31 @@ std::vector<Far::PatchParam> makeParams(internal::MeshLevels const &mesh,
     for (int depth = cells.GetFirstLevel(); depth <= cells.GetLastLevel(); ++depth) {
         internal::Level const &level = mesh.levels[std::size_t(depth)];
         for (internal::PatchCell const &cell : cells.GetCells(depth)) {
-            int const size = level.GetFaceSize(cell.face);
-            bool const isKite = internal::HasKites(size);
+            internal::FaceCells const ofFace = internal::FindFaceCells(level, cell.face);
+            int const numCorners = ofFace.GetNumCorners(cell.half);
+            bool const isKite = internal::HasKites(numCorners);
             unsigned short transitions = 0;
-            for (int side = HasHalves(size) ? 1 : 0; side < 4 && !isKite; ++side) {
-                int const local = HasHalves(size) ? kHexagonHalves[cell.half][side] : side;
+            auto const addTransition = [&](int side, int otherCorners, Index face, int half) {
+                bool const hasKites =
+                    internal::HasKites(otherCorners) && cells.HasCell(depth, face, half);
+                transitions |= hasKites ? 1u << side : 0u;
+            };
+            if (ofFace.IsCut() && !isKite) {
+                addTransition(0, ofFace.GetNumCorners(1 - cell.half), cell.face, 1 - cell.half);
+            }
+            for (int side = ofFace.IsCut() ? 1 : 0; side < 4 && !isKite; ++side) {
+                int const local = ofFace.GetLocal(cell.half, side);
                 Index const edge = level.faceEdges[level.faceFirstCorner[cell.face] + local];
-                for (Index const face : level.edgeFaces[edge]) {
-                    bool const hasKites = face >= 0 &&
-                                          internal::HasKites(level.GetFaceSize(face)) &&
-                                          cells.HasCell(depth, face, 0);
-                    transitions |= hasKites ? 1u << side : 0u;
+                for (int i = 0; i < 2; ++i) {
+                    Index const face = level.edgeFaces[edge][i];
+                    if (face >= 0) {
+                        internal::FaceCells const other = internal::FindFaceCells(level, face);
+                        int const half = other.GetHalfOfEdge(level.edgeFaceLocals[edge][i]);
+                        addTransition(side, other.GetNumCorners(half), face, half);
+                    }
                 }
             }
-            for (int i = 0; i < internal::GetNumPatches(size); ++i) {
+            for (int i = 0; i < internal::GetNumPatches(numCorners); ++i) {
                 Far::PatchParam param;
                 param.Set(Index(params.size()), 0, 0, isKite ? 1 : 0, isKite, 0, transitions,
                           false);

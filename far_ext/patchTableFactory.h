@@ -232,11 +232,15 @@ private:
     // A cell: its children, first that of its face, then those of its edges; or its patches.
     struct Node {
         Index firstChild;
-        Index firstPatch;
+        Index firstPatches[2]; // by half, if the face is cut
+    };
+    struct Face {
+        int size;
+        int centerEnd; // as internal::FindCenterEnd() has it
     };
     class TreeBuilder;
 
-    std::vector<int> _faceSizes;
+    std::vector<Face> _faces;
     std::vector<Node> _roots; // by face
     std::vector<Node> _children;
     std::vector<Patch> _patches;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cellFrames.h"
 
+#include "patchCells.h"
+
 #include "far_ext/limit/limitPatch.h"
 #include "far_ext/vtr/parallel.h"
 #include "far_ext/vtr/pi.h"
@@ -33,8 +35,10 @@ bool hasNoBeginning(Level const &level, Index vert) {
         return true;
     }
     for (Index k = level.vertFirstFace[vert]; k < level.vertFirstFace[vert + 1]; ++k) {
-        if (level.vertFaceLocals[k] % kDiagonalEnd == kDiagonalStart &&
-            Crease::IsInfinite(level.GetDiagonalSharpness(level.vertFaces[k]))) {
+        Index const face = level.vertFaces[k];
+        int const local = level.vertFaceLocals[k];
+        if (Crease::IsInfinite(level.GetDiagonalSharpness(face)) &&
+            (local == kDiagonalStart || local == level.GetDiagonalEnd(face))) {
             return false;
         }
     }
@@ -207,10 +211,10 @@ double CellFrames::GetEdgeAngle(Index vert, int i) const {
 CornerFrame CellFrames::Get(Index face, int local, int half) const {
     Index const corner = _level.faceFirstCorner[face] + local;
     Index const vert = _level.faceVerts[corner];
-    // A whole hexagon has two cells, which meet at its corners 0 and 3: seen from the first half 1 comes
-    // first, from the other half 0.
-    bool const isCut =
-        HasHalves(_level.GetFaceSize(face)) && local % kDiagonalEnd == kDiagonalStart;
+    // Two cells of a face meet at the ends of its diagonal: seen from the first half 1 comes first, from the other
+    // half 0.
+    FaceCells const cells = FindFaceCells(_level, face);
+    bool const isCut = cells.IsCut() && (local == kDiagonalStart || local == cells.diagonalEnd);
     bool const isFirst = (half == 1) == (local == kDiagonalStart);
     auto const part = [&](double begin, double end) {
         double const middle = (begin + end) / 2;

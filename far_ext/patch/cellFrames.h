@@ -33,7 +33,7 @@ public:
     /// \param rows   of the level, of \p verts at least
     CellFrames(Level const &level, LimitRows const &rows, std::vector<Index> const &verts);
 
-    /// \param half  of a hexagon that is cut, as in kHexagonHalves; of no matter for others
+    /// \param half  of a face that is cut, as in FaceCells; of no matter for others
     CornerFrame Get(Index face, int local, int half) const;
 
     /// Whether a sharp edge or diagonal is at 0, or the vertex has several fans.

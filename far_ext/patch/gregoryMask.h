@@ -64,19 +64,56 @@ void AddCurvePoints(CurveShape const &shape, GregoryMask &mask);
 void AddInnerPoints(CurveShape const &shape, CurveNeighbor const neighbors[2], double signOfM,
                     bool isReverse, GregoryMask &mask);
 
-/// The lines from the middles of sides to the centre, in faces with kites.
+/// The lines from the middles of sides to the centre, in cells with kites.
 struct SpokeShape {
-    double lengths[2]; ///< of the derivatives at both ends, in terms of those of a regular face
-    double blend;      ///< how much more than the mean of its ends the derivative across has
+    double lengths
+        [2]; ///< of the derivatives at both ends, in terms of the lines of a regular polygon, or half of one
+    double blend; ///< how much more than the mean of its ends the derivative across has
 };
+
+/// \brief How a side of a cell with kites lies in its plane, where sides are 1 long, but for the first one of half a polygon;
+/// and the line from its middle to the centre.
+struct KiteSide {
+    double length;     ///< of the side
+    double unit;       ///< of the derivatives that the row of the centre has
+    double spoke;      ///< length of the line
+    double along;      ///< direction of the line at the middle: in that of the side,
+    double across;     ///< and to the left of it
+    double direction;  ///< angle of the line as it leaves the centre, from U there
+    double angles[2];  ///< at the centre, between it and the lines of the sides before and behind
+    double besides[2]; ///< length of these
+};
+
+/// Side number \p side of a regular polygon, in whose centre corner 0 lies in the direction of U.
+KiteSide MakeKiteSide(int numSides, int side);
+/// \brief That of half a regular polygon, which has \p numCorners and the first side across.
+///
+/// Its centre lies at a third of the line from the middle of the first side to the corner across, or the middle of the
+/// side across; U is the direction of the first side, V that of the line.
+KiteSide MakeHalfKiteSide(int numCorners, int side);
+
+/// \brief The row of the centre of half a polygon as sums of other rows: its point, U and V.
+///
+/// First the three rows of the curve that the first side is, then those of what is across: of the vertex, or the three of
+/// the curve.
+struct HalfCenter {
+    GregoryMask::Point sums[2][3];
+};
+/// \param angle  of the line to the centre as it leaves the vertex
+HalfCenter MakeHalfCenter(int numCorners, CurveShape const &longSide, double signOfM, double angle);
+/// \param across  the curve across
+HalfCenter MakeHalfCenter(int numCorners, CurveShape const &longSide, double signOfM,
+                          CurveShape const &across, double signOfMAcross);
+/// The weights of the corners of half a polygon for its derivative to the left of the middle of the first side.
+std::vector<double> FindWeightsAcross(int numCorners);
 
 /// The first points of a side of a face with kites: those in its halves, and its middle.
 inline constexpr int kNumHalfPoints = 5;
 
-/// \brief The points that a face of \p numSides sides, which is made of a patch for each of its
-/// corners, has beside one of its sides and on the line from its middle to the centre.
+/// \brief The points that a cell which is made of a patch for each of its corners has beside one of its sides and on
+/// the line from its middle to the centre.
 ///
-/// Such a patch, a *kite*, has a corner of the face, the middle of the next side, the centre and the
+/// Such a patch, a *kite*, has a corner of the cell, the middle of the next side, the centre and the
 /// middle of the side before.  In this order: the two points in the first half of the side, its
 /// middle, the two points in its second half; two inner points in each of the kites beside these
 /// halves; on the line from the middle to the centre two points, two inner points of the kite of the
@@ -85,10 +122,9 @@ inline constexpr int kNumHalfPoints = 5;
 /// \param shape      of the side, counter-clockwise
 /// \param neighbors  the sides before and behind
 /// \param spoke      the lines from middles to the centre
-/// \param signOfM    -1 where M is the derivative away from the face
-/// \param side       its number; corner 0 lies in the direction of U of the centre
+/// \param signOfM    -1 where M is the derivative away from the cell
 void AddKitePoints(CurveShape const &shape, CurveNeighbor const neighbors[2],
-                   SpokeShape const &spoke, double signOfM, int numSides, int side,
+                   SpokeShape const &spoke, KiteSide const &side, double signOfM,
                    GregoryMask &mask);
 
 } // namespace OpenSubdivHex::FarExt::internal

@@ -113,11 +113,16 @@ private:
         Index rowOfM = Far::INDEX_INVALID; // of side 0, or of both if it is not sharp
         Index secondRowOfM = Far::INDEX_INVALID;
     };
-    // Sources of the middle of a curve, or of the centre of a face.
+    // Sources of the middle of a curve, or of the centre of a cell.
     struct CenterRow {
-        enum Kind { kEdge, kEdgeSide, kDiagonal, kDiagonalSide, kCenter } kind;
-        Index index;
+        enum Kind { kEdge, kEdgeSide, kDiagonal, kDiagonalSide, kCenter, kHalfCenter } kind;
+        Index index; // of a half cell in _halfCenters
         int side;
+    };
+    // The centre of a half cell in terms of other rows: those of its long side, and those of what lies across.
+    struct HalfCenterRows {
+        Index rows[2][3]; // INDEX_INVALID behind the last
+        HalfCenter center;
     };
     // A diagonal that is an edge of the level before, where that has a cell on its other side: the curve is
     // as it is there.
@@ -146,13 +151,20 @@ private:
 
     int getSize(Index face) const { return _level.GetFaceSize(face); }
     bool isCell(Index face, int half) const { return _cells.HasCell(_depth, face, half); }
-    static int getNumCorners(int faceSize) { return HasHalves(faceSize) ? 4 : faceSize; }
+    FaceCells getCells(Index face) const { return FindFaceCells(_level, face); }
+    int getNumCorners(PatchCell const &cell) const {
+        return getCells(cell.face).GetNumCorners(cell.half);
+    }
+    // Sides of the polygon that a half cell is half of, or of another cell.
+    int getNumSidesOfPolygon(PatchCell const &cell) const {
+        int const numCorners = getNumCorners(cell);
+        return IsHalfCell(_level, cell) ? 2 * (numCorners - 1) : numCorners;
+    }
     // The place in the face of a cell's corner.
     int getLocal(Index face, int half, int corner) const {
-        int const size = getSize(face);
-        int const numCorners = getNumCorners(size);
-        corner = (corner + numCorners) % numCorners;
-        return HasHalves(size) ? kHexagonHalves[half][corner] : corner;
+        FaceCells const cells = getCells(face);
+        int const numCorners = cells.GetNumCorners(half);
+        return cells.GetLocal(half, (corner + numCorners) % numCorners);
     }
     CellSide getCellSide(Index face, int half, int side) const;
     // The cell on a side of an edge or diagonal, and which of its sides that is.
@@ -183,7 +195,7 @@ private:
     PatchSite getSite(PatchQuantity quantity, CellSide const &curve, Index vert, Index other) const;
     void addShares(Index vert, LimitStencils::KeptRow &kept) const;
     CellCurve getCellCurve(PatchCell cell, int side) const;
-    SpokeShape getSpoke(int faceSize) const;
+    SpokeShape getSpoke(PatchCell const &cell) const;
     Border const *findBorder(Index face) const {
         auto const found = _borders.find(face);
         return found != _borders.end() ? &found->second : nullptr;
@@ -219,9 +231,19 @@ private:
                _cells.HasCell(_depth + 1, cFace, 1 - curve.side);
     }
     void addSides(CellSide const *sides, int numSides, bool isShared, CurvePoints &points);
-    void addKites(Index face);
+    void addKites(PatchCell const &cell);
+    Index addHalfCenter(PatchCell const &cell);
+    // The row of the derivative across the middle of a curve, on one side of it.
+    Index getRowOfM(CellSide const &curve) const {
+        CurvePoints const &points = getPoints(curve);
+        return curve.side == 0 ? points.rowOfM : points.secondRowOfM;
+    }
+    // -1 where that is the derivative away from the cell.
+    double getSignOfM(CellSide const &curve) const {
+        return !isSharp(curve) && curve.side == 1 ? -1 : 1;
+    }
     LimitRow getRow(Index number, LimitStencils::KeptRow &kept) const;
-    void addAcross(Index const verts[4], double factor, bool isOfChild,
+    void addAcross(std::vector<Index> const &verts, double factor, bool isOfChild,
                    LimitStencils::KeptRow &kept) const;
     void addOfChild(Index cVert, double du, LimitStencils::KeptRow &kept) const;
 
@@ -256,11 +278,12 @@ private:
     std::vector<FurtherRow> _furtherRows; // ascending
     Index _numVertexRows = 0;
     std::vector<CenterRow> _centerRows;
+    std::vector<HalfCenterRows> _halfCenters;
 
     std::unordered_map<Index, Border> _borders; // by face
     std::vector<CurvePoints> _edges;
     std::vector<CurvePoints> _diagonals; // by face
-    std::vector<Index> _kites;           // by face, and the centre; INDEX_INVALID
+    std::vector<Index> _centers;         // of kites, by face and half
     std::vector<PointGroup> _groups;
     MaskCache _masks;
     Index _numPoints = 0;
@@ -270,7 +293,7 @@ private:
 CallStatus PatchBuilder::LevelBuilder::FindLimits() {
     std::vector<unsigned char> marks(std::size_t(_level.numVertices), 0);
     for (PatchCell const &cell : _cells.GetCells(_depth)) {
-        for (int corner = 0; corner < getNumCorners(getSize(cell.face)); ++corner) {
+        for (int corner = 0; corner < getNumCorners(cell); ++corner) {
             int const local = getLocal(cell.face, cell.half, corner);
             marks[std::size_t(_level.GetFaceVertices(cell.face)[local])] = 1;
         }
@@ -300,7 +323,7 @@ CallStatus PatchBuilder::LevelBuilder::FindLimits() {
         _rowOfVertex[std::size_t(vert)] = _numVertexRows++;
     }
     for (PatchCell const &cell : _cells.GetCells(_depth)) {
-        for (int corner = 0; corner < getNumCorners(getSize(cell.face)); ++corner) {
+        for (int corner = 0; corner < getNumCorners(cell); ++corner) {
             CornerFrame const frame = getFrame(cell.face, cell.half, corner);
             if (frame.side > 0) {
                 _furtherRows.push_back({frame.vert, frame.side});
@@ -330,7 +353,8 @@ Index PatchBuilder::LevelBuilder::findFurtherRow(Index vert, int side) const {
 }
 
 auto PatchBuilder::LevelBuilder::getCellSide(Index face, int half, int side) const -> CellSide {
-    if (HasHalves(getSize(face)) && side == 0) {
+    FaceCells const cells = getCells(face);
+    if (cells.IsCut() && side == 0) {
         return {true, face, half};
     }
     int const local = getLocal(face, half, side);
@@ -347,17 +371,14 @@ PatchCell PatchBuilder::LevelBuilder::getCell(CellSide const &curve, int *side) 
     }
     Index const face = _level.edgeFaces[curve.index][curve.side];
     int const local = _level.edgeFaceLocals[curve.index][curve.side];
-    if (!HasHalves(getSize(face))) {
-        *side = local;
-        return {face, 0};
-    }
-    *side = local % kDiagonalEnd + 1;
-    return {face, GetHalfOfEdge(local)};
+    FaceCells const cells = getCells(face);
+    *side = cells.GetSideOfEdge(local);
+    return {face, cells.GetHalfOfEdge(local)};
 }
 
 // How long the derivative of a cell's side is at its start or end.
 double PatchBuilder::LevelBuilder::getLength(Index face, int half, int side, int end) const {
-    int const numCorners = getNumCorners(getSize(face));
+    int const numCorners = getNumCorners({face, half});
     side = (side + numCorners) % numCorners;
     Index const vert = _level.GetFaceVertices(face)[getLocal(face, half, side + end)];
     CellSide const curve = getCellSide(face, half, side);
@@ -396,7 +417,7 @@ std::uint8_t PatchBuilder::LevelBuilder::findVertexCode(Index vert) const {
 bool PatchBuilder::LevelBuilder::findBesideOther(Index vert) const {
     Far::ConstIndexArray const faces = _level.GetVertexFaces(vert);
     return std::any_of(faces.begin(), faces.end(), [this](Index face) {
-        return !HasHalves(getSize(face)) && !_level.IsHalfFace(face);
+        return _level.IsHalfFace(face) ? HasKites(getSize(face)) : !HasHalves(getSize(face));
     });
 }
 
@@ -437,7 +458,8 @@ PatchSite PatchBuilder::LevelBuilder::getSite(PatchQuantity quantity, CellSide c
         if (face < 0) {
             return steps == 0 ? 0 : kHexagon;
         }
-        int const size = _level.IsHalfFace(face) ? kHexagon : getSize(face);
+        int ofCell = 0;
+        int const size = getNumSidesOfPolygon(getCell({false, curve.index, side}, &ofCell));
         return steps == 0                      ? std::min(size, PatchSite::kMaxFaceSize)
                : size == kHexagon || size == 4 ? size
                                                : 5;
@@ -523,7 +545,7 @@ auto PatchBuilder::LevelBuilder::getCellCurve(PatchCell cell, int side) const ->
             getLength(cell.face, cell.half, side + (end == 0 ? -1 : 1), 1 - end)};
     }
     if (Border const *const border =
-            HasHalves(getSize(cell.face)) && side == 0 ? findBorder(cell.face) : nullptr) {
+            getCells(cell.face).IsCut() && side == 0 ? findBorder(cell.face) : nullptr) {
         for (int end = 0; end < 2; ++end) {
             result.shape.ends[end].unit = border->shape.ends[cell.half == 0 ? end : 1 - end].unit;
         }
@@ -569,11 +591,11 @@ CallStatus PatchBuilder::LevelBuilder::formDirections(
     return status;
 }
 
-SpokeShape PatchBuilder::LevelBuilder::getSpoke(int faceSize) const {
+SpokeShape PatchBuilder::LevelBuilder::getSpoke(PatchCell const &cell) const {
     PatchSite site;
     site.steps = std::uint8_t(std::min(_depth - _surfaceDepth, PatchSite::kMaxSteps));
     site.kind = PatchSite::kSpoke;
-    site.smallFace = std::uint8_t(std::min(faceSize, PatchSite::kMaxFaceSize));
+    site.smallFace = std::uint8_t(std::min(getNumSidesOfPolygon(cell), PatchSite::kMaxFaceSize));
     SpokeShape spoke{};
     std::uint8_t const ends[2] = {PatchSite::kMiddle, PatchSite::kCenter};
     for (int end = 0; end < 2; ++end) {
@@ -669,18 +691,18 @@ Index PatchBuilder::LevelBuilder::AddPoints(Index firstPoint) {
     _numPoints = firstPoint;
     _edges.resize(std::size_t(_level.numEdges));
     _diagonals.resize(std::size_t(_level.numFaces));
-    _kites.assign(2 * std::size_t(_level.numFaces), Far::INDEX_INVALID);
+    _centers.assign(2 * std::size_t(_level.numFaces), Far::INDEX_INVALID);
     for (Index edge = 0; edge < _level.numEdges; ++edge) {
         addCurve(false, edge);
     }
     for (Index face = 0; face < _level.numFaces; ++face) {
-        if (HasHalves(getSize(face))) {
+        if (getCells(face).IsCut()) {
             addCurve(true, face);
         }
     }
     for (PatchCell const &cell : _cells.GetCells(_depth)) {
-        if (HasKites(getSize(cell.face))) {
-            addKites(cell.face);
+        if (HasKites(getNumCorners(cell))) {
+            addKites(cell);
         }
     }
     return _numPoints;
@@ -736,7 +758,7 @@ void PatchBuilder::LevelBuilder::addSides(CellSide const *sides, int numSides, b
     for (int i = 0; i < numSides; ++i) {
         int ofCell = 0;
         PatchCell const cell = getCell(sides[i], &ofCell);
-        if (!HasKites(getSize(cell.face))) {
+        if (!HasKites(getNumCorners(cell))) {
             found[numFound++] = {getCellCurve(cell, ofCell), sides[i].side, true};
             needsPoints = needsPoints || points.points[0] == Far::INDEX_INVALID;
         } else if (numSides == 1 && hasFinerCell(sides[i])) {
@@ -782,42 +804,66 @@ void PatchBuilder::LevelBuilder::addSides(CellSide const *sides, int numSides, b
     }
 }
 
-void PatchBuilder::LevelBuilder::addKites(Index face) {
-    int const size = getSize(face);
-    Index const rowOfCenter = addCenterRow({CenterRow::kCenter, face, 0});
-    SpokeShape const spoke = getSpoke(size);
+void PatchBuilder::LevelBuilder::addKites(PatchCell const &cell) {
+    int const size = getNumCorners(cell);
+    bool const isHalf = IsHalfCell(_level, cell);
+    Index const rowOfCenter =
+        isHalf ? addHalfCenter(cell) : addCenterRow({CenterRow::kCenter, cell.face, 0});
+    SpokeShape const spoke = getSpoke(cell);
     for (int i = 0; i < size; ++i) {
-        CellSide const side = getCellSide(face, 0, i);
+        CellSide const side = getCellSide(cell.face, cell.half, i);
         CurvePoints &points = getPoints(side);
-        CellCurve const curve = getCellCurve({face, 0}, i);
+        CellCurve const curve = getCellCurve(cell, i);
         bool const hasHalves = points.halves != Far::INDEX_INVALID;
-        double const sign = !isSharp(side) && side.side == 1 ? -1 : 1;
+        double const sign = getSignOfM(side);
         MaskCache::Key key;
-        key << size << i << sign << hasHalves;
+        key << size << isHalf << i << sign << hasHalves;
         addToKey(curve, key);
         GregoryMask const *const mask = _masks.Find(key, [&](GregoryMask &made) {
-            AddKitePoints(curve.shape, curve.neighbors, spoke, sign, size, i, made);
+            KiteSide const ofKites = isHalf ? MakeHalfKiteSide(size, i) : MakeKiteSide(size, i);
+            AddKitePoints(curve.shape, curve.neighbors, spoke, ofKites, sign, made);
             if (hasHalves) {
                 made.points.erase(made.points.begin(), made.points.begin() + kNumHalfPoints);
             }
         });
-        Index first = addGroup({{curve.rows[0], curve.rows[1],
-                                 side.side == 0 ? points.rowOfM : points.secondRowOfM, rowOfCenter},
-                                mask});
+        Index first =
+            addGroup({{curve.rows[0], curve.rows[1], getRowOfM(side), rowOfCenter}, mask});
         if (!hasHalves) {
             points.halves = first;
             points.sideOfHalves = side.side;
             first += kNumHalfPoints;
         }
-        if (i == 0) {
-            _kites[2 * std::size_t(face)] = first;
-        }
         points.inner[side.side] = first;
     }
     GregoryMask const *const center = _masks.Find(
         MaskCache::Key() << size, [](GregoryMask &made) { made.points.push_back({1}); });
-    _kites[2 * std::size_t(face) + 1] = addGroup(
+    _centers[2 * std::size_t(cell.face) + std::size_t(cell.half)] = addGroup(
         {{rowOfCenter, Far::INDEX_INVALID, Far::INDEX_INVALID, Far::INDEX_INVALID}, center});
+}
+
+Index PatchBuilder::LevelBuilder::addHalfCenter(PatchCell const &cell) {
+    int const size = getNumCorners(cell);
+    auto const fillRows = [&](int side, CellCurve const &curve, Index *rows) {
+        rows[0] = curve.rows[0];
+        rows[1] = curve.rows[1];
+        rows[2] = getRowOfM(getCellSide(cell.face, cell.half, side));
+        return getSignOfM(getCellSide(cell.face, cell.half, side));
+    };
+    HalfCenterRows result;
+    CellCurve const longSide = getCellCurve(cell, 0);
+    double const sign = fillRows(0, longSide, result.rows[0]);
+    if (size % 2 == 1) {
+        CornerFrame const frame = getFrame(cell.face, cell.half, (size + 1) / 2);
+        result.rows[1][0] = FindRow(frame.vert, frame.side);
+        result.rows[1][1] = result.rows[1][2] = Far::INDEX_INVALID;
+        result.center = MakeHalfCenter(size, longSide.shape, sign, (frame.begin + frame.end) / 2);
+    } else {
+        CellCurve const across = getCellCurve(cell, size / 2);
+        double const signAcross = fillRows(size / 2, across, result.rows[1]);
+        result.center = MakeHalfCenter(size, longSide.shape, sign, across.shape, signAcross);
+    }
+    _halfCenters.push_back(result);
+    return addCenterRow({CenterRow::kHalfCenter, Index(_halfCenters.size()) - 1, 0});
 }
 
 void PatchBuilder::LevelBuilder::addOfChild(Index cVert, double du,
@@ -826,12 +872,12 @@ void PatchBuilder::LevelBuilder::addOfChild(Index cVert, double du,
                         [&](Index vert, double weight) { kept.Add(vert, 0, du * weight, 0); });
 }
 
-// From the long side of half a hexagon to the other one.
-void PatchBuilder::LevelBuilder::addAcross(Index const verts[4], double factor, bool isOfChild,
-                                           LimitStencils::KeptRow &kept) const {
-    double const weight = factor / std::sqrt(3.0);
-    for (int i = 0; i < 4; ++i) {
-        double const du = i < 2 ? -weight : weight;
+// From the long side of half a regular polygon inwards, whose other sides are 1 long.
+void PatchBuilder::LevelBuilder::addAcross(std::vector<Index> const &verts, double factor,
+                                           bool isOfChild, LimitStencils::KeptRow &kept) const {
+    std::vector<double> const weights = FindWeightsAcross(int(verts.size()));
+    for (std::size_t i = 0; i < verts.size(); ++i) {
+        double const du = factor * weights[i];
         if (isOfChild) {
             addOfChild(verts[i], du, kept);
         } else {
@@ -872,15 +918,15 @@ LimitRow PatchBuilder::LevelBuilder::getRow(Index number, LimitStencils::KeptRow
     }
     case CenterRow::kEdgeSide: {
         if (_level.IsSharpBoundaryB(row.index)) {
-            Index const face = _level.edgeFaces[row.index][0];
-            addAcross(_level.GetFaceVertices(face).begin(), 1, false, kept);
+            auto const ofFace = _level.GetFaceVertices(_level.edgeFaces[row.index][0]);
+            addAcross({ofFace.begin(), ofFace.end()}, 1, false, kept);
             break;
         }
         Index const cFace = _toChild.GetEdgeChildFace(row.index);
         Far::ConstIndexArray const verts = child.GetFaceVertices(cFace);
-        Index ofHalf[4];
+        std::vector<Index> ofHalf;
         for (int i = 0; i < 4; ++i) {
-            ofHalf[i] = verts[HasHalves(verts.size()) ? kHexagonHalves[row.side][i] : i];
+            ofHalf.push_back(verts[HasHalves(verts.size()) ? kHexagonHalves[row.side][i] : i]);
         }
         addAcross(ofHalf, 2, true, kept);
         break;
@@ -895,9 +941,9 @@ LimitRow PatchBuilder::LevelBuilder::getRow(Index number, LimitStencils::KeptRow
     }
     case CenterRow::kDiagonalSide: {
         Far::ConstIndexArray const verts = _level.GetFaceVertices(row.index);
-        Index ofHalf[4];
-        for (int i = 0; i < 4; ++i) {
-            ofHalf[i] = verts[kHexagonHalves[row.side][i]];
+        std::vector<Index> ofHalf;
+        for (int i = 0; i < getNumCorners({row.index, row.side}); ++i) {
+            ofHalf.push_back(verts[getLocal(row.index, row.side, i)]);
         }
         addAcross(ofHalf, 1, false, kept);
         break;
@@ -908,6 +954,24 @@ LimitRow PatchBuilder::LevelBuilder::getRow(Index number, LimitStencils::KeptRow
         for (int i = 0; i < verts.size(); ++i) {
             auto const k = std::size_t(i);
             kept.Add(verts[i], mask.weights[k], mask.sides[0].du[k], mask.sides[0].dv[k]);
+        }
+        break;
+    }
+    case CenterRow::kHalfCenter: {
+        HalfCenterRows const &halfCenter = _halfCenters[std::size_t(row.index)];
+        LimitStencils::KeptRow keptOfTerms;
+        for (int group = 0; group < 2; ++group) {
+            GregoryMask::Point const(&sums)[3] = halfCenter.center.sums[group];
+            for (std::size_t k = 0; k < 3 && halfCenter.rows[group][k] != Far::INDEX_INVALID; ++k) {
+                LimitRow const terms = getRow(halfCenter.rows[group][k], keptOfTerms);
+                for (int i = 0; i < terms.size; ++i) {
+                    auto const sum = [&](std::size_t j) {
+                        return sums[j][3 * k] * terms.weights[i] +
+                               sums[j][3 * k + 1] * terms.du[i] + sums[j][3 * k + 2] * terms.dv[i];
+                    };
+                    kept.Add(terms.sources[i], sum(0), sum(1), sum(2));
+                }
+            }
         }
         break;
     }
@@ -938,7 +1002,7 @@ void PatchBuilder::LevelBuilder::AddPatches(std::vector<Index> const &pointOfVer
     };
     for (PatchCell const &cell : _cells.GetCells(_depth)) {
         Index const face = cell.face;
-        int const size = getSize(face);
+        int const size = getNumCorners(cell);
         if (!HasKites(size)) {
             std::size_t const first = points.size();
             points.resize(first + kNumPatchPoints);
@@ -959,7 +1023,8 @@ void PatchBuilder::LevelBuilder::AddPatches(std::vector<Index> const &pointOfVer
                 Index inner;
             } sides[2]; // that behind the corner, and that before it
             for (int k = 0; k < 2; ++k) {
-                CellSide const curve = getCellSide(face, 0, k == 0 ? i : i - 1);
+                CellSide const curve =
+                    getCellSide(face, cell.half, k == 0 ? i : (i + size - 1) % size);
                 CurvePoints const &ofCurve = getPoints(curve);
                 bool const isReverse = ofCurve.sideOfHalves != curve.side;
                 for (int j = 0; j < kNumHalfPoints; ++j) {
@@ -974,9 +1039,9 @@ void PatchBuilder::LevelBuilder::AddPatches(std::vector<Index> const &pointOfVer
             std::size_t const first = points.size();
             points.resize(first + kNumPatchPoints);
             Index *const patch = points.data() + first;
-            patch[0] = getVertexPoint(face, 0, i);
+            patch[0] = getVertexPoint(face, cell.half, i);
             patch[5] = behind[2];
-            patch[10] = _kites[2 * std::size_t(face) + 1];
+            patch[10] = _centers[2 * std::size_t(face) + std::size_t(cell.half)];
             patch[15] = before[2];
             setSide(patch, 0, {behind[0], behind[1], in, in + 1});
             setSide(patch, 1, {in + 4, in + 5, in + 6, in + 7});

@@ -11,7 +11,7 @@ constexpr unsigned char kBothHalves = 3;
 
 // The bits of all cells of a face.
 unsigned char getAllCells(Level const &level, Index face) {
-    return HasHalves(level.GetFaceSize(face)) ? kBothHalves : 1;
+    return FindFaceCells(level, face).IsCut() ? kBothHalves : 1;
 }
 
 std::vector<unsigned char> makeAllCells(Level const &level) {
@@ -45,6 +45,15 @@ std::vector<unsigned char> makeChildren(Refinement const &refinement,
 }
 
 } // namespace
+
+FaceCells FindFaceCells(Level const &level, Index face) {
+    int const size = level.GetFaceSize(face);
+    if (CrossedFace const *const crossed = level.FindCrossedFace(face);
+        crossed && Sdc::Crease::IsInfinite(level.GetDiagonalSharpness(face))) {
+        return {size, crossed->end};
+    }
+    return {size, HasHalves(size) ? kDiagonalEnd : 0};
+}
 
 PatchCells::PatchCells(MeshLevels const &mesh, int level) : _firstLevel(level) {
     addCells(mesh, level, makeAllCells(mesh.levels[std::size_t(level)]));
@@ -156,16 +165,19 @@ PatchCells::PatchCells(FVarChannel const &channel, MeshLevels const &mesh, Patch
         for (std::size_t face = 0; face < marks.size(); ++face) {
             for (std::size_t half = 0; half < 2; ++half) {
                 firsts[2 * face + half] = next;
-                next += (marks[face] >> half & 1) != 0
-                            ? internal::GetNumPatches(level.values->GetFaceSize(Index(face)))
-                            : 0;
+                next +=
+                    (marks[face] >> half & 1) != 0
+                        ? internal::GetNumPatches(
+                              FindFaceCells(*level.values, Index(face)).GetNumCorners(int(half)))
+                        : 0;
             }
         }
         for (PatchCell const &cell : ofMesh.GetCells(depth)) {
             PatchCell const ofValues = getCell(cell);
             Index const first = firsts[2 * std::size_t(ofValues.face) + std::size_t(ofValues.half)];
-            int const size = mesh.levels[std::size_t(depth)].GetFaceSize(cell.face);
-            for (int i = 0; i < internal::GetNumPatches(size); ++i) {
+            int const numCorners =
+                FindFaceCells(mesh.levels[std::size_t(depth)], cell.face).GetNumCorners(cell.half);
+            for (int i = 0; i < internal::GetNumPatches(numCorners); ++i) {
                 patches.push_back(first + i);
             }
         }
@@ -179,13 +191,13 @@ void PatchCells::addCells(MeshLevels const &mesh, int level, Marks existing) {
     std::vector<PatchCell> cells;
     for (Index face = 0; face < topology.numFaces; ++face) {
         unsigned char &marks = existing[std::size_t(face)];
-        int const size = topology.GetFaceSize(face);
+        FaceCells const faceCells = FindFaceCells(topology, face);
         unsigned const holes = topology.GetHoles(face);
-        marks &= ~(HasHalves(size) ? holes : holes == kHole ? 1u : 0u);
+        marks &= ~(faceCells.IsCut() ? holes : holes == kHole ? 1u : 0u);
         for (int half = 0; half < 2; ++half) {
             if ((marks >> half & 1) != 0) {
                 cells.push_back({face, half});
-                _numPatches += internal::GetNumPatches(size);
+                _numPatches += internal::GetNumPatches(faceCells.GetNumCorners(half));
             }
         }
     }

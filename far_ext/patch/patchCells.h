@@ -9,17 +9,48 @@
 
 namespace OpenSubdivHex::FarExt::internal {
 
-/// \brief A cell that is a patch, or several: a half of a hexagon is one patch, a quad is one, and
-/// each other face is a *kite* for each of its corners.
+/// \brief A cell that is a patch, or several: one of four corners is one patch, as half a hexagon is, and each other is a
+/// *kite* for each of its corners.
 struct PatchCell {
     Far::Index face;
-    int half; ///< of a hexagon, as in kHexagonHalves; else 0
+    int half; ///< of a face that is cut, as in GetPlaceInHalves(); else 0
 };
 
-/// Whether a face of so many sides is made of kites.
-constexpr bool HasKites(int faceSize) { return faceSize != 4 && !HasHalves(faceSize); }
+/// Whether a cell of so many corners is made of kites.
+constexpr bool HasKites(int numCorners) { return numCorners != 4; }
 /// The patches of a cell.
-constexpr int GetNumPatches(int faceSize) { return HasKites(faceSize) ? faceSize : 1; }
+constexpr int GetNumPatches(int numCorners) { return HasKites(numCorners) ? numCorners : 1; }
+
+/// \brief The cells of a face: its two halves if it is a hexagon, or has an infinitely sharp diagonal; else itself.
+struct FaceCells {
+    bool IsCut() const { return diagonalEnd > 0; }
+    /// Of a cell.
+    int GetNumCorners(int half) const {
+        return IsCut() ? GetHalfSize(half, faceSize, diagonalEnd) : faceSize;
+    }
+    /// The place in the face of a corner of a cell, or of the edge that is so many sides behind its first, which is the
+    /// diagonal where the face is cut.
+    int GetLocal(int half, int corner) const {
+        return IsCut() ? GetPlaceInHalves(half, corner, diagonalEnd) : corner;
+    }
+    /// @name The cell that has edge \p local of the face, and which side of the cell that is
+    /// @{
+    int GetHalfOfEdge(int local) const { return IsCut() && local < diagonalEnd ? 1 : 0; }
+    int GetSideOfEdge(int local) const {
+        return !IsCut() ? local : local < diagonalEnd ? local + 1 : local - diagonalEnd + 1;
+    }
+    /// @}
+
+    int faceSize;
+    int diagonalEnd; ///< the vertex where the diagonal between the halves ends; 0: there is none
+};
+
+/// Those of a face.
+FaceCells FindFaceCells(Level const &level, Far::Index face);
+/// Whether a cell is half of a regular polygon with its first side across.
+inline bool IsHalfCell(Level const &level, PatchCell const &cell) {
+    return FindFaceCells(level, cell.face).IsCut() || level.IsHalfFace(cell.face);
+}
 
 /// \brief Which cells of which levels are patches: together they are all of the surface but its holes.
 ///

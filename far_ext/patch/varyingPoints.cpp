@@ -46,25 +46,38 @@ VaryingPoints::VaryingPoints(TopologyRefiner const &refiner, int channel, PatchC
         Level const &level = mesh.levels[std::size_t(depth)];
         std::map<Index, Index> pointOfEdge;
         for (PatchCell const &cell : cells.GetCells(depth)) {
-            Far::ConstIndexArray const verts = level.GetFaceVertices(cell.face);
-            int const size = verts.size();
-            if (!HasKites(size)) {
-                for (int i = 0; i < 4; ++i) {
-                    int const local = HasHalves(size) ? kHexagonHalves[cell.half][i] : i;
-                    _patchPoints.push_back(getVertexPoint(verts[local]));
+            FaceCells const faceCells = FindFaceCells(level, cell.face);
+            std::vector<Index> verts;
+            for (int i = 0; i < faceCells.GetNumCorners(cell.half); ++i) {
+                verts.push_back(level.GetFaceVertices(cell.face)[faceCells.GetLocal(cell.half, i)]);
+            }
+            std::size_t const size = verts.size();
+            if (!HasKites(int(size))) {
+                for (Index const vert : verts) {
+                    _patchPoints.push_back(getVertexPoint(vert));
                 }
                 continue;
             }
-            Index const center = addPoint({verts.begin(), verts.end()});
-            auto const getMiddle = [&](int i) {
-                Index const edge = level.faceEdges[level.faceFirstCorner[cell.face] + i];
+            // Of half a polygon at a third of the line to what is across.
+            std::size_t const across = size / 2 + 1;
+            std::size_t const beforeAcross = (size + 1) / 2;
+            Index const center = addPoint(
+                IsHalfCell(level, cell) ? std::vector<Index>{verts[0], verts[0], verts[1], verts[1],
+                                                             verts[beforeAcross], verts[across]}
+                                        : verts);
+            auto const getMiddle = [&](std::size_t i) {
+                // Diagonals behind edges.
+                Index const edge = faceCells.IsCut() && i == 0
+                                       ? level.numEdges + cell.face
+                                       : level.faceEdges[level.faceFirstCorner[cell.face] +
+                                                         faceCells.GetLocal(cell.half, int(i))];
                 auto const added = pointOfEdge.try_emplace(edge, Far::INDEX_INVALID);
                 if (added.second) {
                     added.first->second = addPoint({verts[i], verts[(i + 1) % size]});
                 }
                 return added.first->second;
             };
-            for (int i = 0; i < size; ++i) {
+            for (std::size_t i = 0; i < size; ++i) {
                 _patchPoints.push_back(getVertexPoint(verts[i]));
                 _patchPoints.push_back(getMiddle(i));
                 _patchPoints.push_back(center);

@@ -85,7 +85,27 @@ bool areHexagonal(MeshLevels const &mesh, int baseDepth, int depth) {
     return depth >= baseDepth;
 }
 
+// The same point as seen from the centre of the polygon.
+SectorPoint changeCenter(BasePolygon const &from, BasePolygon const &to, SectorPoint point,
+                         int &sector) {
+    if (point.a + point.b == 1) {
+        return point; // on the edge, without rounding
+    }
+    BasePolygon::Pair place;
+    from.Write(sector, point, place.data());
+    BasePolygon::Pair const &center = to.GetCenter();
+    return to.FindSectorPoint({place[0] - center[0], place[1] - center[1]}, sector);
+}
+
 } // namespace
+
+int FindCenterEnd(Level const &level, Index face) {
+    if (level.IsHalfFace(face)) {
+        return kHalfFaceLongEdge + 1;
+    }
+    CrossedFace const *const crossed = level.FindCrossedFace(face);
+    return crossed && Sdc::Crease::IsInfinite(level.GetDiagonalSharpness(face)) ? crossed->end : 0;
+}
 
 Index FindBaseFace(MeshLevels const &mesh, int baseDepth, int depth, Cell cell) {
     if (!areHexagonal(mesh, baseDepth, depth)) {
@@ -104,15 +124,21 @@ bool FindBaseCoords(MeshLevels const &mesh, int baseDepth, int depth, Cell cell,
         return false;
     }
     PlacedCell const placed = place(mesh, baseDepth, depth, cell);
-    int const size = mesh.levels[std::size_t(baseDepth)].GetFaceSize(placed.baseFace);
-    BasePolygon const polygon(size);
+    Level const &base = mesh.levels[std::size_t(baseDepth)];
+    int const size = base.GetFaceSize(placed.baseFace);
+    int const centerEnd = FindCenterEnd(base, placed.baseFace);
+    BasePolygon const polygon(size, centerEnd);
+    BasePolygon const regular(size);
     auto const parameterization = MakeFaceParameterization(size);
     auto const writePoint = [&](int sector, SectorPoint point, REAL *at) {
         if (coordsOf == CoordsOf::Plane) {
             polygon.Write(sector, point, at);
         } else {
+            if (centerEnd > 0) {
+                point = changeCenter(polygon, regular, point, sector);
+            }
             BasePolygon::Pair const coords =
-                FindFaceCoords(parameterization, polygon, sector, point);
+                FindFaceCoords(parameterization, regular, sector, point);
             at[0] = REAL(coords[0]);
             at[1] = REAL(coords[1]);
         }

@@ -4,6 +4,7 @@
 
 #include "pi.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -19,15 +20,27 @@ struct SectorPoint {
 
 /// \brief A base face in its plane, counter-clockwise, edge 0 from (0, 0) to (1, 0): a triangle has its third corner
 /// at (0, 1), a quad is the unit square, others are regular polygons.
+///
+/// Its *centre*, from which sectors are seen, is that of the polygon, or the middle between its corner 0 and another one.
 class BasePolygon {
 public:
     using Pair = std::array<double, 2>;
 
-    explicit BasePolygon(int size)
-        : _size(size), _radius(0.5 / std::sin(kPi / size)),
+    /// \param centerEnd  the other one; 0: there is none
+    explicit BasePolygon(int size, int centerEnd = 0)
+        : _size(size), _radius(0.5 / std::sin(kPi / size)), _centerEnd(centerEnd),
           _center(size == 3   ? Pair{kThird, kThird}
                   : size == 4 ? Pair{0.5, 0.5}
-                              : Pair{0.5, 0.5 / std::tan(kPi / size)}) {}
+                              : Pair{0.5, 0.5 / std::tan(kPi / size)}) {
+        if (centerEnd > 0) {
+            Pair const start = getRegularCorner(0);
+            Pair const end = getRegularCorner(centerEnd);
+            for (std::size_t i = 0; i < 2; ++i) {
+                _moved[i] = 0.5 * (start[i] + end[i]);
+                _center[i] += _moved[i];
+            }
+        }
+    }
 
     int GetSize() const { return _size; }
 
@@ -35,8 +48,12 @@ public:
     void Write(int sector, SectorPoint point, REAL *uv) const {
         if (_size == 3) {
             // Without rounding on the border.
-            double const ofAll = (1 - point.a - point.b) * kThird;
-            double weights[3] = {ofAll, ofAll, ofAll};
+            double const ofCenter = 1 - point.a - point.b;
+            double weights[3] = {ofCenter * kThird, ofCenter * kThird, ofCenter * kThird};
+            if (_centerEnd > 0) {
+                weights[1] = weights[2] = 0;
+                weights[0] = weights[_centerEnd] = 0.5 * ofCenter;
+            }
             weights[sector] += point.a;
             weights[(sector + 1) % 3] += point.b;
             uv[0] = REAL(weights[1]);
@@ -60,13 +77,41 @@ public:
                 Pair{-start[1] / determinant, start[0] / determinant}};
     }
 
+    /// The sector that has a place, which is relative to the centre, or is nearest; and where it is there.
+    SectorPoint FindSectorPoint(Pair const &place, int &sector) const {
+        auto const cross = [](Pair const &a, Pair const &b) { return a[0] * b[1] - a[1] * b[0]; };
+        SectorPoint best;
+        int const first = _centerEnd == 1 ? 1 : 0; // that of edge 0 is empty then
+        for (int i = first; i < _size; ++i) {
+            Pair const start = GetCorner(i);
+            Pair const end = GetCorner((i + 1) % _size);
+            double const determinant = cross(start, end);
+            SectorPoint const point = {cross(place, end) / determinant,
+                                       cross(start, place) / determinant};
+            if (i == first || std::min(point.a, point.b) > std::min(best.a, best.b)) {
+                best = point;
+                sector = i;
+            }
+        }
+        return best;
+    }
+
     /// Corner number i, from the centre.
     Pair GetCorner(int i) const {
+        Pair const corner = getRegularCorner(i);
+        return _centerEnd > 0 ? Pair{corner[0] - _moved[0], corner[1] - _moved[1]} : corner;
+    }
+
+private:
+    static constexpr double kThird = 1.0 / 3;
+
+    // From the centre of the polygon.
+    Pair getRegularCorner(int i) const {
         if (_size == 3) {
             return {i == 1 ? 2 * kThird : -kThird, i == 2 ? 2 * kThird : -kThird};
         }
         if (i <= 1) {
-            return {i - 0.5, -_center[1]};
+            return {i - 0.5, _size == 4 ? -0.5 : -0.5 / std::tan(kPi / _size)};
         }
         if (_size == 4) {
             return {i == 2 ? 0.5 : -0.5, 0.5};
@@ -75,12 +120,11 @@ public:
         return {_radius * std::cos(angle), _radius * std::sin(angle)};
     }
 
-private:
-    static constexpr double kThird = 1.0 / 3;
-
     int const _size;
     double const _radius;
-    Pair const _center;
+    int const _centerEnd;
+    Pair _center;
+    Pair _moved = {0, 0}; // from the centre of the polygon
 };
 
 /// What a BasePolygon of a common size says, found once: places are found in it by the million.

@@ -72,6 +72,9 @@ private:
     void setCut(Index corner, bool isEndCut) {
         _cuts[FindEdgeEnd(_mesh, corner)] = isEndCut ? EndCut::Cut : EndCut::Whole;
     }
+    // The faces that make half a hexagon.
+    static constexpr Index kHalfHexagonFaces = 3;
+
     // Whether a line passes the vertex whose polygon has two cuts.
     bool passes(Index vert, VertexFan const &fan) const {
         SharpVertex const *const sharp = _mesh.FindSharpVertex(vert);
@@ -91,6 +94,16 @@ private:
         Index const behind = fan.isClosed ? fan.GetSize() - before : before;
         if (std::min(before, behind) < 2 || std::max(before, behind) > kMaxPassedFaces) {
             return false;
+        }
+        // Where faces are kept apart the halves of a polygon must be cells of their own, which they are at every level
+        // if it's a hexagon, or the crease never fades.
+        if (fan.isClosed && (before != kHalfHexagonFaces || behind != kHalfHexagonFaces)) {
+            for (Index const k : cuts) {
+                Index const edge = _mesh.faceEdges[_mesh.GetVertexCorner(k)];
+                if (partsFaces(edge) && !Crease::IsInfinite(_mesh.GetEdgeSharpness(edge))) {
+                    return false;
+                }
+            }
         }
         auto const passesValues = [&](FVarChannel const &channel) {
             Level const &values = channel.values.levels[0];

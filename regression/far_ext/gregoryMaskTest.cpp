@@ -17,6 +17,8 @@ using FarExt::internal::AddKitePoints;
 using FarExt::internal::CurveNeighbor;
 using FarExt::internal::CurveShape;
 using FarExt::internal::GregoryMask;
+using FarExt::internal::MakeHalfKiteSide;
+using FarExt::internal::MakeKiteSide;
 
 namespace {
 
@@ -58,8 +60,10 @@ TEST(GregoryMask, PointsAreAffine) {
     AddCurvePoints(shape, mask);
     AddInnerPoints(shape, neighbors, 1, false, mask);
     AddInnerPoints(shape, neighbors, -1, true, mask);
-    AddKitePoints(shape, neighbors, {{0.9, 1.1}, 0.2}, 1, 5, 2, mask);
-    ASSERT_EQ(mask.points.size(), 2u + 2u + 2u + 15u);
+    for (auto const &side : {MakeKiteSide(5, 2), MakeHalfKiteSide(3, 0), MakeHalfKiteSide(6, 2)}) {
+        AddKitePoints(shape, neighbors, {{0.9, 1.1}, 0.2}, side, 1, mask);
+    }
+    ASSERT_EQ(mask.points.size(), 2u + 2u + 2u + 3 * 15u);
     for (GregoryMask::Point const &point : mask.points) {
         double sum = 0;
         for (std::size_t i = 0; i < point.size(); i += 3) {

@@ -40,6 +40,35 @@ PatchPoint EvaluatePatch(Far::PatchTable const &table, Far::Index patch, double 
     return {sums[0], sums[1], sums[2]};
 }
 
+/// The cells of a face: itself, or the halves on both sides of an infinitely sharp diagonal, and of hexagons.
+struct CellsOfFace {
+    CellsOfFace(FarExt::TopologyLevel const &level, Far::Index face)
+        : size(level.GetFaceVertices(face).size()) {
+        if (Sdc::Crease::IsInfinite(level.GetFaceDiagonalSharpness(face))) {
+            end = level.GetFaceDiagonalEnd(face);
+        } else if (size == 6) {
+            end = 3;
+        }
+    }
+
+    int GetNum() const { return end > 0 ? 2 : 1; }
+    int GetNumCorners(int half) const {
+        return end > 0 ? FarExt::GetHalfSize(half, size, end) : size;
+    }
+    int GetLocal(int half, int corner) const {
+        return end > 0 ? FarExt::GetPlaceInHalves(half, corner, end) : corner;
+    }
+    bool HasKites(int half) const { return GetNumCorners(half) != 4; }
+    int GetHalfOfEdge(int local) const { return local < end ? 1 : 0; }
+    /// The side of its cell that an edge is.
+    int GetSide(int local) const {
+        return end == 0 ? local : local < end ? local + 1 : local + 1 - end;
+    }
+
+    int size;
+    int end = 0; ///< of the diagonal
+};
+
 /// \brief The patches of one level in double precision: which cell each belongs to, and what they are for
 /// given positions, by Far's own basis.
 class PatchSurface {
@@ -77,11 +106,12 @@ public:
         _firstPatches.assign(2 * std::size_t(_level.GetNumFaces()), Far::INDEX_INVALID);
         Index numPatches = 0;
         for (Index face = 0; face < _level.GetNumFaces(); ++face) {
-            int const size = _level.GetFaceVertices(face).size();
-            for (int half = 0; half < (size == 6 ? 2 : 1); ++half) {
-                if (size == 6 ? !_level.IsFaceHole(face, half) : !_level.IsFaceHole(face)) {
+            CellsOfFace const cells(_level, face);
+            for (int half = 0; half < cells.GetNum(); ++half) {
+                if (cells.GetNum() == 2 ? !_level.IsFaceHole(face, half)
+                                        : !_level.IsFaceHole(face)) {
                     _firstPatches[2 * std::size_t(face) + std::size_t(half)] = numPatches;
-                    numPatches += size == 4 || size == 6 ? 1 : size;
+                    numPatches += cells.HasKites(half) ? cells.GetNumCorners(half) : 1;
                 }
             }
         }
@@ -111,24 +141,21 @@ public:
     /// \brief At a part of the way along an edge or, with \p local < 0, along the diagonal of the half, as the
     /// cell on one of its sides has it; \p half is of no matter for edges.
     PatchPoint EvaluateSide(Index face, int local, int half, double part) const {
-        int const size = _level.GetFaceVertices(face).size();
-        int side = local;
-        if (size == 6 && local >= 0) {
-            half = FarExt::GetHalfOfEdge(local);
-            side = local % 3 + 1;
-        } else if (size == 6) {
-            side = 0;
-        } else {
-            half = 0;
+        CellsOfFace const cells(_level, face);
+        int side = 0;
+        if (local >= 0) {
+            half = cells.GetHalfOfEdge(local);
+            side = cells.GetSide(local);
         }
         Index patch = GetFirstPatch(face, half);
-        if (size == 4 || size == 6) {
+        if (!cells.HasKites(half)) {
             double const s[] = {part, 1, 1 - part, 0};
             double const t[] = {0, part, 1, 1 - part};
             return Evaluate(patch, s[side], t[side]);
         }
-        return part < 0.5 ? Evaluate(patch + local, 2 * part, 0)
-                          : Evaluate(patch + (local + 1) % size, 0, 2 - 2 * part);
+        return part < 0.5
+                   ? Evaluate(patch + side, 2 * part, 0)
+                   : Evaluate(patch + (side + 1) % cells.GetNumCorners(half), 0, 2 - 2 * part);
     }
 
     /// Whether there are patches on a side of an edge.
@@ -138,8 +165,7 @@ public:
             return false;
         }
         int const local = _level.GetEdgeFaceLocalIndices(edge)[side];
-        bool const isCut = _level.GetFaceVertices(faces[side]).size() == 6;
-        return GetFirstPatch(faces[side], isCut ? FarExt::GetHalfOfEdge(local) : 0) !=
+        return GetFirstPatch(faces[side], CellsOfFace(_level, faces[side]).GetHalfOfEdge(local)) !=
                Far::INDEX_INVALID;
     }
 

@@ -134,36 +134,38 @@ template <typename FUNCTION>
 void forEachCorner(PatchSurface const &surface, FUNCTION const &function) {
     TopologyLevel const &level = surface.GetLevel();
     for (Index face = 0; face < level.GetNumFaces(); ++face) {
-        int const size = level.GetFaceVertices(face).size();
-        for (int half = 0; half < (size == 6 ? 2 : 1); ++half) {
+        CellsOfFace const cells(level, face);
+        for (int half = 0; half < cells.GetNum(); ++half) {
             if (surface.GetFirstPatch(face, half) == Far::INDEX_INVALID) {
                 continue;
             }
-            for (int corner = 0; corner < (size == 6 ? 4 : size); ++corner) {
-                function(face, half, corner,
-                         size == 6 ? FarExt::kHexagonHalves[half][corner] : corner);
+            for (int corner = 0; corner < cells.GetNumCorners(half); ++corner) {
+                function(face, half, corner, cells.GetLocal(half, corner));
             }
         }
     }
 }
 
-// The patches around the centre of a face have the lines to it, and tangent planes there, in common.
+// The patches around the centre of a cell have the lines to it, and tangent planes there, in common.
 void expectKitesToMeet(PatchSurface const &surface, double size) {
     TopologyLevel const &level = surface.GetLevel();
     for (Index face = 0; face < level.GetNumFaces(); ++face) {
-        int const faceSize = level.GetFaceVertices(face).size();
-        Index const first = surface.GetFirstPatch(face, 0);
-        if (faceSize == 4 || faceSize == 6 || first == Far::INDEX_INVALID) {
-            continue;
-        }
-        for (int i = 0; i < faceSize; ++i) {
-            for (double const part : {0.2, 0.9}) {
-                PatchPoint const a = surface.Evaluate(first + i, 1, part);
-                PatchPoint const b = surface.Evaluate(first + (i + 1) % faceSize, part, 1);
-                EXPECT_LT((a.p - b.p).norm(), 1e-12 * size);
-                if (isPlane(a.ds, a.dt, size) && isPlane(b.ds, b.dt, size)) {
-                    EXPECT_LT(getAngle(a.GetNormal(), b.GetNormal()), 1e-6)
-                        << "face " << face << ", kite " << i;
+        CellsOfFace const cells(level, face);
+        for (int half = 0; half < cells.GetNum(); ++half) {
+            Index const first = surface.GetFirstPatch(face, half);
+            if (!cells.HasKites(half) || first == Far::INDEX_INVALID) {
+                continue;
+            }
+            int const numCorners = cells.GetNumCorners(half);
+            for (int i = 0; i < numCorners; ++i) {
+                for (double const part : {0.2, 0.9}) {
+                    PatchPoint const a = surface.Evaluate(first + i, 1, part);
+                    PatchPoint const b = surface.Evaluate(first + (i + 1) % numCorners, part, 1);
+                    EXPECT_LT((a.p - b.p).norm(), 1e-12 * size);
+                    if (isPlane(a.ds, a.dt, size) && isPlane(b.ds, b.dt, size)) {
+                        EXPECT_LT(getAngle(a.GetNormal(), b.GetNormal()), 1e-6)
+                            << "face " << face << ", half " << half << ", kite " << i;
+                    }
                 }
             }
         }
@@ -184,8 +186,7 @@ TEST(PatchTable, CornersAreLimits) {
             TopologyLevel const &level = surface.GetLevel();
             LimitSides const sides(level);
             forEachCorner(surface, [&](Index face, int half, int corner, int local) {
-                int const faceSize = level.GetFaceVertices(face).size();
-                bool const isKite = faceSize != 4 && faceSize != 6;
+                bool const isKite = CellsOfFace(level, face).HasKites(half);
                 Index const patch = surface.GetFirstPatch(face, half) + (isKite ? corner : 0);
                 int const i = isKite ? 0 : corner;
                 PatchPoint const point =
@@ -241,7 +242,7 @@ TEST(PatchTable, PatchesMeet) {
             int const faceSize = level.GetFaceVertices(faces[0]).size();
             bool const isSharp =
                 level.IsEdgeInfSharp(edge) ||
-                haveNoPlane(faces[0], faceSize == 6 ? FarExt::GetHalfOfEdge(locals[0]) : 0,
+                haveNoPlane(faces[0], CellsOfFace(level, faces[0]).GetHalfOfEdge(locals[0]),
                             locals[0], (locals[0] + 1) % faceSize);
             for (double part : parts) {
                 compare(surface.EvaluateSide(faces[0], locals[0], 0, part),
@@ -250,17 +251,20 @@ TEST(PatchTable, PatchesMeet) {
             }
         }
         for (Index face = 0; face < level.GetNumFaces(); ++face) {
-            if (level.GetFaceVertices(face).size() != 6 ||
-                surface.GetFirstPatch(face, 0) == Far::INDEX_INVALID ||
+            CellsOfFace const cells(level, face);
+            if (cells.GetNum() == 1 || surface.GetFirstPatch(face, 0) == Far::INDEX_INVALID ||
                 surface.GetFirstPatch(face, 1) == Far::INDEX_INVALID) {
                 continue;
             }
             bool const isSharp = Sdc::Crease::IsInfinite(level.GetFaceDiagonalSharpness(face)) ||
-                                 haveNoPlane(face, 0, FarExt::kDiagonalStart, FarExt::kDiagonalEnd);
+                                 haveNoPlane(face, 0, FarExt::kDiagonalStart, cells.end);
             for (double part : parts) {
                 compare(surface.EvaluateSide(face, -1, 0, part),
                         surface.EvaluateSide(face, -1, 1, 1 - part), isSharp,
                         "diagonal of face " + std::to_string(face));
+            }
+            if (cells.HasKites(0) || cells.HasKites(1)) {
+                continue;
             }
             Index const a = surface.GetFirstPatch(face, 0);
             Index const b = surface.GetFirstPatch(face, 1);

@@ -18,7 +18,7 @@ struct SharpSector {
             int const face = level.GetVertexFaces(vert)[i];
             int const local = level.GetVertexFaceLocalIndices(vert)[i];
             bool const isCut = Sdc::Crease::IsInfinite(level.GetFaceDiagonalSharpness(face)) &&
-                               local % FarExt::kDiagonalEnd == 0;
+                               (local == 0 || local == level.GetFaceDiagonalEnd(face));
             numSharp += isCut;
             bool const isHalf = level.IsFaceHalf(face) && local < 2;
             for (int half : {0, 1}) {
