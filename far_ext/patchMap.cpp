@@ -33,14 +33,18 @@ Point middle(Point a, Point b) { return 0.5 * (a + b); }
 // A cell in the plane of its face: a half has its long side first.
 struct Polygon {
     std::vector<Point> corners;
-    int centerEnd; // as FindCenterEnd() has it
+    bool isHalf;
+    std::optional<Point> middleOfDiagonal = {}; // the first side, where it is bent there
 
-    bool IsHalf() const { return centerEnd == 1; }
     Point GetCorner(std::size_t i) const { return corners[i % corners.size()]; }
+    Point GetMiddle(std::size_t side) const {
+        side %= corners.size();
+        return isHalf && side == 0 ? FindCenter() : middle(corners[side], GetCorner(side + 1));
+    }
     // Where children meet, and what they shrink towards.
     Point FindCenter() const {
-        if (centerEnd > 0) {
-            return middle(corners[0], corners[std::size_t(centerEnd)]);
+        if (isHalf) {
+            return middleOfDiagonal ? *middleOfDiagonal : middle(corners[0], corners[1]);
         }
         Point sum = {0, 0};
         for (Point const &corner : corners) {
@@ -51,7 +55,7 @@ struct Polygon {
     // Where kites meet: in a half at a third of the line from its long side to what is across.
     Point FindCenterOfKites() const {
         Point const center = FindCenter();
-        if (!IsHalf()) {
+        if (!isHalf) {
             return center;
         }
         std::size_t const numCorners = corners.size();
@@ -60,10 +64,10 @@ struct Polygon {
     }
 };
 
-Polygon makeFace(int size, int centerEnd) {
+Polygon makeFace(int size, bool isHalf) {
     internal::BasePolygon const base(size);
     std::array<double, 2> const center = base.GetCenter();
-    Polygon polygon = {{}, centerEnd};
+    Polygon polygon = {{}, isHalf};
     for (int i = 0; i < size; ++i) {
         std::array<double, 2> const corner = base.GetCorner(i);
         polygon.corners.push_back({center[0] + corner[0], center[1] + corner[1]});
@@ -80,7 +84,7 @@ int findChild(Polygon const &cell, Point place, Polygon &child) {
         inner.push_back(middle(corner, center));
     }
     // The edge in whose sector it lies: at the place where it crosses from the right of a spoke to the left.
-    bool const isHalf = cell.IsHalf();
+    bool const isHalf = cell.isHalf;
     std::size_t edge = isHalf ? 1 : 0;
     for (std::size_t i = edge; i < size; ++i) {
         bool const isLeft = cross(cell.corners[i] - center, place - center) >= 0;
@@ -94,10 +98,10 @@ int findChild(Polygon const &cell, Point place, Polygon &child) {
     }
     std::size_t const next = (edge + 1) % size;
     if (cross(inner[next] - inner[edge], place - inner[edge]) >= 0) {
-        child = {inner, cell.centerEnd};
+        child = {inner, isHalf};
         return 0;
     }
-    child = {{cell.corners[edge], cell.corners[next], inner[next], inner[edge]}, 1};
+    child = {{cell.corners[edge], cell.corners[next], inner[next], inner[edge]}, true};
     return 1 + int(edge);
 }
 
@@ -106,8 +110,8 @@ int findKite(Polygon const &face, Point place) {
     Point const center = face.FindCenterOfKites();
     std::size_t const size = face.corners.size();
     for (std::size_t i = 0; i < size; ++i) {
-        Point const before = middle(face.GetCorner(i + size - 1), face.corners[i]);
-        Point const behind = middle(face.corners[i], face.GetCorner(i + 1));
+        Point const before = face.GetMiddle(i + size - 1);
+        Point const behind = face.GetMiddle(i);
         if (cross(before - center, place - center) >= 0 &&
             cross(behind - center, place - center) <= 0) {
             return int(i);
@@ -119,6 +123,26 @@ int findKite(Polygon const &face, Point place) {
 Point evaluate(std::array<double, 8> const &q, double s, double t) {
     auto const at = [&](std::size_t i) { return Point{q[2 * i], q[2 * i + 1]}; };
     return (1 - t) * ((1 - s) * at(0) + s * at(1)) + t * ((1 - s) * at(3) + s * at(2));
+}
+
+// Makes of a face its half that has a place: 0 or 1.
+int takeHalf(internal::FaceCells const &cells, Point place, Polygon &cell) {
+    Point const center = cell.FindCenter();
+    // Half 0 lies to the left of the diagonal, which is bent at the centre.
+    auto const isLeft = [&](int corner, double sign) {
+        return sign * cross(cell.corners[std::size_t(corner)] - center, place - center) >= 0;
+    };
+    bool const isBehindEnd = isLeft(cells.diagonalEnd, 1);
+    bool const isBeforeStart = isLeft(kDiagonalStart, -1);
+    bool const isConvex = 2 * cells.diagonalEnd >= cells.faceSize;
+    bool const isFirst = isConvex ? isBehindEnd && isBeforeStart : isBehindEnd || isBeforeStart;
+    int const half = isFirst ? 0 : 1;
+    Polygon result = {{}, true, center};
+    for (int i = 0; i < cells.GetNumCorners(half); ++i) {
+        result.corners.push_back(cell.corners[std::size_t(cells.GetLocal(half, i))]);
+    }
+    cell = std::move(result);
+    return half;
 }
 
 // Newton's method: the quadrilaterals are convex, and not far from parallelograms.
@@ -185,7 +209,7 @@ private:
         bool const isWhole =
             cells.IsCut() && level.GetFaceSurfaceFace(cell.face, 1 - cell.half) == patch.face;
         int const numCorners = cells.GetNumCorners(cell.half);
-        Polygon polygon = {{}, internal::IsHalfCell(level.GetLevel(), cell) ? 1 : 0};
+        Polygon polygon = {{}, internal::IsHalfCell(level.GetLevel(), cell)};
         for (int corner = 0; corner < numCorners; ++corner) {
             auto const i = std::size_t(isWhole ? cells.GetLocal(cell.half, corner) : corner);
             polygon.corners.push_back({uv[2 * i], uv[2 * i + 1]});
@@ -197,15 +221,22 @@ private:
             }
             _map._patches.push_back(patch);
         };
-        if (!internal::HasKites(numCorners)) {
+        if (!cells.HasKites(cell.half)) {
             add({polygon.corners[0], polygon.corners[1], polygon.corners[2], polygon.corners[3]});
             return;
+        }
+        if (isWhole) {
+            Polygon face = {{}, false};
+            for (int i = 0; i < size; ++i) {
+                face.corners.push_back({uv[2 * std::size_t(i)], uv[2 * std::size_t(i) + 1]});
+            }
+            polygon.middleOfDiagonal = face.FindCenter();
         }
         Point const center = polygon.FindCenterOfKites();
         for (std::size_t i = 0; i < polygon.corners.size(); ++i) {
             Point const corner = polygon.corners[i];
-            add({corner, middle(corner, polygon.GetCorner(i + 1)), center,
-                 middle(polygon.GetCorner(i + polygon.corners.size() - 1), corner)});
+            add({corner, polygon.GetMiddle(i), center,
+                 polygon.GetMiddle(i + polygon.corners.size() - 1)});
         }
     }
 
@@ -261,7 +292,8 @@ PatchMap::PatchMap(TopologyRefiner const &refiner, PatchTableFactory::Options op
     Level const &surface =
         refiner.GetLevel(refiner.GetHexSchemeOptions().GetSurfaceLevel()).GetLevel();
     for (Index face = 0; face < surface.numFaces; ++face) {
-        _faces.push_back({surface.GetFaceSize(face), internal::FindCenterEnd(surface, face)});
+        _faces.push_back({surface.GetFaceSize(face), surface.IsHalfFace(face),
+                          internal::FindFaceCells(surface, face).diagonalEnd});
     }
     TreeBuilder(*this, refiner, *cells);
 }
@@ -271,41 +303,32 @@ auto PatchMap::FindPlace(Index face, double u, double v) const -> Place {
     if (face < 0 || face >= GetNumFaces() || !std::isfinite(u) || !std::isfinite(v)) {
         return place;
     }
-    auto const [faceSize, centerEnd] = _faces[std::size_t(face)];
+    auto const [faceSize, isHalf, diagonalEnd] = _faces[std::size_t(face)];
     auto const coords =
         internal::FindInPlane(internal::MakeFaceParameterization(faceSize), {u, v}).coords;
     Point const wanted = {coords[0], coords[1]};
-    Polygon cell = makeFace(faceSize, centerEnd);
+    Polygon cell = makeFace(faceSize, isHalf);
     Node node = _roots[std::size_t(face)];
     while (node.firstChild != Far::INDEX_INVALID) {
         Polygon child;
         int const i = findChild(cell, wanted, child);
         // A half has its long side first, and no child there.
-        int const numBefore = cell.IsHalf() && i > 0 ? i - 1 : i;
+        int const numBefore = cell.isHalf && i > 0 ? i - 1 : i;
         node = _children[std::size_t(node.firstChild) + std::size_t(numBefore)];
         cell = std::move(child);
     }
-    int half = 0;
+    // Half cells are not cut, but the faces of surfaces, and others as large as these.
     auto const size = int(cell.corners.size());
-    internal::FaceCells const cells = {size, cell.centerEnd > 1 ? cell.centerEnd
-                                             : cell.centerEnd == 0 && HasHalves(size) ? kDiagonalEnd
-                                                                                      : 0};
-    if (cells.IsCut()) {
-        // Half 0 lies to the left of the diagonal.
-        Point const start = cell.corners[kDiagonalStart];
-        Point const end = cell.corners[std::size_t(cells.diagonalEnd)];
-        half = cross(end - start, wanted - start) < 0 ? 1 : 0;
-        Polygon ofHalf = {{}, 1};
-        for (int i = 0; i < cells.GetNumCorners(half); ++i) {
-            ofHalf.corners.push_back(cell.corners[std::size_t(cells.GetLocal(half, i))]);
-        }
-        cell = std::move(ofHalf);
+    internal::FaceCells cells = {size, 0};
+    if (!cell.isHalf) {
+        cells.diagonalEnd = diagonalEnd;
     }
+    int const half = cells.IsCut() ? takeHalf(cells, wanted, cell) : 0;
     if (node.firstPatches[half] == Far::INDEX_INVALID) {
         return place;
     }
     place.patch = node.firstPatches[half];
-    if (internal::HasKites(int(cell.corners.size()))) {
+    if (cells.HasKites(half)) {
         place.patch += findKite(cell, wanted);
     }
     invert(GetCoords(place.patch), wanted, place.s, place.t);

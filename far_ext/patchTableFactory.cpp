@@ -83,16 +83,15 @@ std::vector<Far::PatchParam> makeParams(internal::MeshLevels const &mesh,
         internal::Level const &level = mesh.levels[std::size_t(depth)];
         for (internal::PatchCell const &cell : cells.GetCells(depth)) {
             internal::FaceCells const ofFace = internal::FindFaceCells(level, cell.face);
-            int const numCorners = ofFace.GetNumCorners(cell.half);
-            bool const isKite = internal::HasKites(numCorners);
+            bool const isKite = ofFace.HasKites(cell.half);
             unsigned short transitions = 0;
-            auto const addTransition = [&](int side, int otherCorners, Index face, int half) {
-                bool const hasKites =
-                    internal::HasKites(otherCorners) && cells.HasCell(depth, face, half);
+            auto const addTransition = [&](int side, internal::FaceCells const &other, Index face,
+                                           int half) {
+                bool const hasKites = other.HasKites(half) && cells.HasCell(depth, face, half);
                 transitions |= hasKites ? 1u << side : 0u;
             };
             if (ofFace.IsCut() && !isKite) {
-                addTransition(0, ofFace.GetNumCorners(1 - cell.half), cell.face, 1 - cell.half);
+                addTransition(0, ofFace, cell.face, 1 - cell.half);
             }
             for (int side = ofFace.IsCut() ? 1 : 0; side < 4 && !isKite; ++side) {
                 int const local = ofFace.GetLocal(cell.half, side);
@@ -102,11 +101,11 @@ std::vector<Far::PatchParam> makeParams(internal::MeshLevels const &mesh,
                     if (face >= 0) {
                         internal::FaceCells const other = internal::FindFaceCells(level, face);
                         int const half = other.GetHalfOfEdge(level.edgeFaceLocals[edge][i]);
-                        addTransition(side, other.GetNumCorners(half), face, half);
+                        addTransition(side, other, face, half);
                     }
                 }
             }
-            for (int i = 0; i < internal::GetNumPatches(numCorners); ++i) {
+            for (int i = 0; i < ofFace.GetNumPatches(cell.half); ++i) {
                 Far::PatchParam param;
                 param.Set(Index(params.size()), 0, 0, isKite ? 1 : 0, isKite, 0, transitions,
                           false);

@@ -236,7 +236,8 @@ private:
     };
     struct Face {
         int size;
-        int centerEnd; // as internal::FindCenterEnd() has it
+        bool isHalf;
+        int diagonalEnd; // of internal::FaceCells
     };
     class TreeBuilder;
 

@@ -13,7 +13,10 @@ namespace OpenSubdivHex::FarExt::internal {
 /// The Gregory patches of a cell: a whole hexagon is one for each half, each other cell of four corners is one, and all
 /// others are a kite for each corner.
 constexpr int GetNumCellPatches(CellKind kind, int numCorners) {
-    return kind == CellKind::Whole && HasHalves(numCorners) ? 2 : GetNumPatches(numCorners);
+    return kind == CellKind::Half  ? 1
+           : HasHalves(numCorners) ? 2
+           : numCorners == 4       ? 1
+                                   : numCorners;
 }
 
 /// \brief Finds the points of the patches of a whole or half cell as sums of the vertices of its patch.

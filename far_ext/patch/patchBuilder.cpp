@@ -155,6 +155,7 @@ private:
     int getNumCorners(PatchCell const &cell) const {
         return getCells(cell.face).GetNumCorners(cell.half);
     }
+    bool hasKites(PatchCell const &cell) const { return getCells(cell.face).HasKites(cell.half); }
     // Sides of the polygon that a half cell is half of, or of another cell.
     int getNumSidesOfPolygon(PatchCell const &cell) const {
         int const numCorners = getNumCorners(cell);
@@ -417,7 +418,7 @@ std::uint8_t PatchBuilder::LevelBuilder::findVertexCode(Index vert) const {
 bool PatchBuilder::LevelBuilder::findBesideOther(Index vert) const {
     Far::ConstIndexArray const faces = _level.GetVertexFaces(vert);
     return std::any_of(faces.begin(), faces.end(), [this](Index face) {
-        return _level.IsHalfFace(face) ? HasKites(getSize(face)) : !HasHalves(getSize(face));
+        return _level.IsHalfFace(face) ? hasKites({face, 0}) : !HasHalves(getSize(face));
     });
 }
 
@@ -701,7 +702,7 @@ Index PatchBuilder::LevelBuilder::AddPoints(Index firstPoint) {
         }
     }
     for (PatchCell const &cell : _cells.GetCells(_depth)) {
-        if (HasKites(getNumCorners(cell))) {
+        if (hasKites(cell)) {
             addKites(cell);
         }
     }
@@ -758,7 +759,7 @@ void PatchBuilder::LevelBuilder::addSides(CellSide const *sides, int numSides, b
     for (int i = 0; i < numSides; ++i) {
         int ofCell = 0;
         PatchCell const cell = getCell(sides[i], &ofCell);
-        if (!HasKites(getNumCorners(cell))) {
+        if (!hasKites(cell)) {
             found[numFound++] = {getCellCurve(cell, ofCell), sides[i].side, true};
             needsPoints = needsPoints || points.points[0] == Far::INDEX_INVALID;
         } else if (numSides == 1 && hasFinerCell(sides[i])) {
@@ -1003,7 +1004,7 @@ void PatchBuilder::LevelBuilder::AddPatches(std::vector<Index> const &pointOfVer
     for (PatchCell const &cell : _cells.GetCells(_depth)) {
         Index const face = cell.face;
         int const size = getNumCorners(cell);
-        if (!HasKites(size)) {
+        if (!hasKites(cell)) {
             std::size_t const first = points.size();
             points.resize(first + kNumPatchPoints);
             for (int side = 0; side < 4; ++side) {

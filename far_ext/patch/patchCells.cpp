@@ -165,19 +165,17 @@ PatchCells::PatchCells(FVarChannel const &channel, MeshLevels const &mesh, Patch
         for (std::size_t face = 0; face < marks.size(); ++face) {
             for (std::size_t half = 0; half < 2; ++half) {
                 firsts[2 * face + half] = next;
-                next +=
-                    (marks[face] >> half & 1) != 0
-                        ? internal::GetNumPatches(
-                              FindFaceCells(*level.values, Index(face)).GetNumCorners(int(half)))
-                        : 0;
+                next += (marks[face] >> half & 1) != 0
+                            ? FindFaceCells(*level.values, Index(face)).GetNumPatches(int(half))
+                            : 0;
             }
         }
         for (PatchCell const &cell : ofMesh.GetCells(depth)) {
             PatchCell const ofValues = getCell(cell);
             Index const first = firsts[2 * std::size_t(ofValues.face) + std::size_t(ofValues.half)];
-            int const numCorners =
-                FindFaceCells(mesh.levels[std::size_t(depth)], cell.face).GetNumCorners(cell.half);
-            for (int i = 0; i < internal::GetNumPatches(numCorners); ++i) {
+            int const numPatches =
+                FindFaceCells(mesh.levels[std::size_t(depth)], cell.face).GetNumPatches(cell.half);
+            for (int i = 0; i < numPatches; ++i) {
                 patches.push_back(first + i);
             }
         }
@@ -197,7 +195,7 @@ void PatchCells::addCells(MeshLevels const &mesh, int level, Marks existing) {
         for (int half = 0; half < 2; ++half) {
             if ((marks >> half & 1) != 0) {
                 cells.push_back({face, half});
-                _numPatches += internal::GetNumPatches(faceCells.GetNumCorners(half));
+                _numPatches += faceCells.GetNumPatches(half);
             }
         }
     }

@@ -9,25 +9,29 @@
 
 namespace OpenSubdivHex::FarExt::internal {
 
-/// \brief A cell that is a patch, or several: one of four corners is one patch, as half a hexagon is, and each other is a
-/// *kite* for each of its corners.
+/// \brief A cell that is a patch, or several: a quad is one patch, half a hexagon is one, and each other is a *kite* for each
+/// of its corners.
 struct PatchCell {
     Far::Index face;
     int half; ///< of a face that is cut, as in GetPlaceInHalves(); else 0
 };
 
-/// Whether a cell of so many corners is made of kites.
-constexpr bool HasKites(int numCorners) { return numCorners != 4; }
-/// The patches of a cell.
-constexpr int GetNumPatches(int numCorners) { return HasKites(numCorners) ? numCorners : 1; }
-
 /// \brief The cells of a face: its two halves if it is a hexagon, or has an infinitely sharp diagonal; else itself.
+///
+/// In the plane of a face a diagonal runs through its centre.
 struct FaceCells {
     bool IsCut() const { return diagonalEnd > 0; }
     /// Of a cell.
     int GetNumCorners(int half) const {
         return IsCut() ? GetHalfSize(half, faceSize, diagonalEnd) : faceSize;
     }
+    /// Whether a cell is made of kites.
+    bool HasKites(int half) const {
+        bool const isStraight = !IsCut() || 2 * diagonalEnd == faceSize;
+        return GetNumCorners(half) != 4 || !isStraight;
+    }
+    /// The patches of a cell.
+    int GetNumPatches(int half) const { return HasKites(half) ? GetNumCorners(half) : 1; }
     /// The place in the face of a corner of a cell, or of the edge that is so many sides behind its first, which is the
     /// diagonal where the face is cut.
     int GetLocal(int half, int corner) const {

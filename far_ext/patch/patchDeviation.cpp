@@ -196,7 +196,7 @@ CallStatus PatchDeviation::Measure(int depth, std::vector<Index> const &faces,
     std::vector<std::size_t> numbers;
     for (std::size_t i = 0; i < faces.size(); ++i) {
         FaceCells const ofFace = FindFaceCells(level, faces[i]);
-        if (!HasKites(ofFace.GetNumCorners(0)) && !HasKites(ofFace.GetNumCorners(1))) {
+        if (!ofFace.HasKites(0) && !ofFace.HasKites(1)) {
             measured.push_back(faces[i]);
             numbers.push_back(i);
         }

@@ -52,7 +52,7 @@ VaryingPoints::VaryingPoints(TopologyRefiner const &refiner, int channel, PatchC
                 verts.push_back(level.GetFaceVertices(cell.face)[faceCells.GetLocal(cell.half, i)]);
             }
             std::size_t const size = verts.size();
-            if (!HasKites(int(size))) {
+            if (!faceCells.HasKites(cell.half)) {
                 for (Index const vert : verts) {
                     _patchPoints.push_back(getVertexPoint(vert));
                 }

@@ -99,14 +99,6 @@ SectorPoint changeCenter(BasePolygon const &from, BasePolygon const &to, SectorP
 
 } // namespace
 
-int FindCenterEnd(Level const &level, Index face) {
-    if (level.IsHalfFace(face)) {
-        return kHalfFaceLongEdge + 1;
-    }
-    CrossedFace const *const crossed = level.FindCrossedFace(face);
-    return crossed && Sdc::Crease::IsInfinite(level.GetDiagonalSharpness(face)) ? crossed->end : 0;
-}
-
 Index FindBaseFace(MeshLevels const &mesh, int baseDepth, int depth, Cell cell) {
     if (!areHexagonal(mesh, baseDepth, depth)) {
         return Far::INDEX_INVALID;
@@ -126,15 +118,15 @@ bool FindBaseCoords(MeshLevels const &mesh, int baseDepth, int depth, Cell cell,
     PlacedCell const placed = place(mesh, baseDepth, depth, cell);
     Level const &base = mesh.levels[std::size_t(baseDepth)];
     int const size = base.GetFaceSize(placed.baseFace);
-    int const centerEnd = FindCenterEnd(base, placed.baseFace);
-    BasePolygon const polygon(size, centerEnd);
+    bool const isHalf = base.IsHalfFace(placed.baseFace);
+    BasePolygon const polygon(size, isHalf);
     BasePolygon const regular(size);
     auto const parameterization = MakeFaceParameterization(size);
     auto const writePoint = [&](int sector, SectorPoint point, REAL *at) {
         if (coordsOf == CoordsOf::Plane) {
             polygon.Write(sector, point, at);
         } else {
-            if (centerEnd > 0) {
+            if (isHalf) {
                 point = changeCenter(polygon, regular, point, sector);
             }
             BasePolygon::Pair const coords =

@@ -6,11 +6,6 @@
 
 namespace OpenSubdivHex::FarExt::internal {
 
-/// \brief Where the *centre* of a face of the surface level is, towards which its F-face shrinks: in the middle between its
-/// vertex 0 and this one, where a half face has its long edge, or an infinitely sharp diagonal ends; 0: it is that of the
-/// polygon.
-int FindCenterEnd(Level const &level, Far::Index face);
-
 /// Kinds of coordinates in a face.
 enum class CoordsOf {
     Plane,           ///< that of BasePolygon

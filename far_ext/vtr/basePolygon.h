@@ -21,20 +21,20 @@ struct SectorPoint {
 /// \brief A base face in its plane, counter-clockwise, edge 0 from (0, 0) to (1, 0): a triangle has its third corner
 /// at (0, 1), a quad is the unit square, others are regular polygons.
 ///
-/// Its *centre*, from which sectors are seen, is that of the polygon, or the middle between its corner 0 and another one.
+/// Its *centre*, from which sectors are seen, is that of the polygon; that of a half face is the middle of its edge 0, whose
+/// sector is empty.
 class BasePolygon {
 public:
     using Pair = std::array<double, 2>;
 
-    /// \param centerEnd  the other one; 0: there is none
-    explicit BasePolygon(int size, int centerEnd = 0)
-        : _size(size), _radius(0.5 / std::sin(kPi / size)), _centerEnd(centerEnd),
+    explicit BasePolygon(int size, bool isHalf = false)
+        : _size(size), _radius(0.5 / std::sin(kPi / size)), _isHalf(isHalf),
           _center(size == 3   ? Pair{kThird, kThird}
                   : size == 4 ? Pair{0.5, 0.5}
                               : Pair{0.5, 0.5 / std::tan(kPi / size)}) {
-        if (centerEnd > 0) {
+        if (isHalf) {
             Pair const start = getRegularCorner(0);
-            Pair const end = getRegularCorner(centerEnd);
+            Pair const end = getRegularCorner(1);
             for (std::size_t i = 0; i < 2; ++i) {
                 _moved[i] = 0.5 * (start[i] + end[i]);
                 _center[i] += _moved[i];
@@ -50,9 +50,9 @@ public:
             // Without rounding on the border.
             double const ofCenter = 1 - point.a - point.b;
             double weights[3] = {ofCenter * kThird, ofCenter * kThird, ofCenter * kThird};
-            if (_centerEnd > 0) {
-                weights[1] = weights[2] = 0;
-                weights[0] = weights[_centerEnd] = 0.5 * ofCenter;
+            if (_isHalf) {
+                weights[0] = weights[1] = 0.5 * ofCenter;
+                weights[2] = 0;
             }
             weights[sector] += point.a;
             weights[(sector + 1) % 3] += point.b;
@@ -81,7 +81,7 @@ public:
     SectorPoint FindSectorPoint(Pair const &place, int &sector) const {
         auto const cross = [](Pair const &a, Pair const &b) { return a[0] * b[1] - a[1] * b[0]; };
         SectorPoint best;
-        int const first = _centerEnd == 1 ? 1 : 0; // that of edge 0 is empty then
+        int const first = _isHalf ? 1 : 0;
         for (int i = first; i < _size; ++i) {
             Pair const start = GetCorner(i);
             Pair const end = GetCorner((i + 1) % _size);
@@ -99,7 +99,7 @@ public:
     /// Corner number i, from the centre.
     Pair GetCorner(int i) const {
         Pair const corner = getRegularCorner(i);
-        return _centerEnd > 0 ? Pair{corner[0] - _moved[0], corner[1] - _moved[1]} : corner;
+        return _isHalf ? Pair{corner[0] - _moved[0], corner[1] - _moved[1]} : corner;
     }
 
 private:
@@ -122,7 +122,7 @@ private:
 
     int const _size;
     double const _radius;
-    int const _centerEnd;
+    bool const _isHalf;
     Pair _center;
     Pair _moved = {0, 0}; // from the centre of the polygon
 };

@@ -95,12 +95,10 @@ private:
         if (std::min(before, behind) < 2 || std::max(before, behind) > kMaxPassedFaces) {
             return false;
         }
-        // Where faces are kept apart the halves of a polygon must be cells of their own, which they are at every level
-        // if it's a hexagon, or the crease never fades.
+        // Where faces are kept apart, so must the halves of the polygon be at every level, as those of hexagons are.
         if (fan.isClosed && (before != kHalfHexagonFaces || behind != kHalfHexagonFaces)) {
             for (Index const k : cuts) {
-                Index const edge = _mesh.faceEdges[_mesh.GetVertexCorner(k)];
-                if (partsFaces(edge) && !Crease::IsInfinite(_mesh.GetEdgeSharpness(edge))) {
+                if (partsFaces(_mesh.faceEdges[_mesh.GetVertexCorner(k)])) {
                     return false;
                 }
             }

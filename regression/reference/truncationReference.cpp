@@ -82,11 +82,10 @@ ReferenceCuts FindCuts(TaggedMesh const &mesh, std::vector<TaggedMesh> const &va
                 int const before = ends[1] - ends[0];
                 isPassed = isPassed && 2 <= before && before <= 64 && 2 <= size - before &&
                            size - before <= 64;
-                // Halves of other sizes are apart only as long as the crease is.
+                // Halves of other sizes have nothing to keep apart.
+                bool const isHexagon = size == 6 && before == 3;
                 for (int end : ends) {
-                    bool const isHexagon = size == 6 && before == 3;
-                    isPassed = isPassed && (isHexagon || !parts(corners[end]) ||
-                                            edgeOf(mesh, corners[end]).sharpness >= 10);
+                    isPassed = isPassed && (isHexagon || !parts(corners[end]));
                 }
                 for (TaggedMesh const &valueMesh : values) {
                     bool const isSeam[] = {edgeOf(valueMesh, corners[ends[0]]).sides.size() == 1,
