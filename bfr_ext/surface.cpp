@@ -12,6 +12,14 @@ namespace OpenSubdivHex::BfrExt {
 
 namespace {
 
+FarExt::internal::FaceCells getFaceCells(internal::BaseFace const &face) {
+    return face.type.GetFaceCells(face.size);
+}
+
+} // namespace
+
+namespace {
+
 using internal::BaseFace;
 using internal::CellStencil;
 
@@ -94,10 +102,10 @@ void Surface<REAL>::BoundControlPointsFromMesh(REAL const meshPoints[],
 
 template <typename REAL>
 int Surface<REAL>::GetNumPatchPoints() const {
-    return IsValid()
-               ? GetNumControlPoints() + internal::kNumPatchPoints *
-                                             internal::GetNumFacePatches(GetFaceSize(), _patchLevel)
-               : 0;
+    return IsValid() ? GetNumControlPoints() +
+                           internal::kNumPatchPoints *
+                               internal::GetNumFacePatches(getFaceCells(GetFace()), _patchLevel)
+                     : 0;
 }
 
 template <typename REAL>
@@ -112,7 +120,7 @@ void Surface<REAL>::ComputePatchPoints(REAL patchPoints[], PointDescriptor const
     if (!IsValid()) {
         return;
     }
-    if (numPlaces >= internal::GetNumFacePatches(GetFaceSize(), _patchLevel)) {
+    if (numPlaces >= internal::GetNumFacePatches(getFaceCells(GetFace()), _patchLevel)) {
         ComputePatchPoints(patchPoints, patchPointDesc);
         return;
     }
@@ -143,8 +151,8 @@ void Surface<REAL>::computePatchPoints(REAL patchPoints[], PointDescriptor const
 template <typename REAL>
 internal::PatchPlace Surface<REAL>::findPatchPlace(REAL const uv[2], int numDerivatives) const {
     return internal::FindPatchPlace(
-        internal::FindBfrPlace(_parameterization, {double(uv[0]), double(uv[1])}, 0), GetFaceSize(),
-        _patchLevel, numDerivatives);
+        internal::FindBfrPlace(_parameterization, {double(uv[0]), double(uv[1])}, 0),
+        getFaceCells(GetFace()), _patchLevel, numDerivatives);
 }
 
 template <typename REAL>

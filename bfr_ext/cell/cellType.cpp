@@ -4,8 +4,6 @@
 #include "plainFace.h"
 #include "ringCell.h"
 
-#include "far_ext/patch/cellPatchPoints.h"
-
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -127,9 +125,12 @@ std::size_t GetCellHeapSize(CellPatch const &cell) {
 }
 
 CellType::CellType(CellTypes &types, CellPatch cell, CellRules const &rules)
-    : _types(types), _cell(std::move(cell)), _numPoints(int(_cell.patch.sources.size())),
-      _isInLattice(isInLattice(_cell.patch)), _isSharp(isSharp(_cell.patch)), _rules(rules),
-      _borderItems(types.GetMemory()), _patterns(types.GetMemory()) {}
+    : _types(types), _cell(std::move(cell)),
+      _faceCells(IsWhole() ? FarExt::internal::FindCellsOfBaseCell(_cell)
+                           : FarExt::internal::FaceCells{_cell.GetNumCorners(), 0}),
+      _numPoints(int(_cell.patch.sources.size())), _isInLattice(isInLattice(_cell.patch)),
+      _isSharp(isSharp(_cell.patch)), _rules(rules), _borderItems(types.GetMemory()),
+      _patterns(types.GetMemory()) {}
 
 std::vector<CellType::Child> const &CellType::GetChildren() const {
     std::call_once(_onceChildren, [&] {
@@ -350,8 +351,8 @@ std::vector<double> CellType::FindPatchPoints(PatchAges const &ages) const {
     if (!FindCellPatchPoints(_cell, _rules.sdcOptions, _rules.hexSchemeOptions,
                              _rules.interpolation, ages, rows)
              .IsOk()) {
-        rows.assign(std::size_t(GetNumCellPatches(_cell.kind, GetNumCorners())) *
-                        std::size_t(kNumPatchPoints) * std::size_t(GetNumPoints()),
+        rows.assign(std::size_t(_faceCells.GetNumPatches()) * std::size_t(kNumPatchPoints) *
+                        std::size_t(GetNumPoints()),
                     std::numeric_limits<double>::quiet_NaN());
     }
     return rows;

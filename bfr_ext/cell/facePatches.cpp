@@ -19,8 +19,6 @@
 
 namespace OpenSubdivHex::BfrExt::internal {
 
-using FarExt::internal::CellKind;
-using FarExt::internal::GetNumCellPatches;
 using FarExt::internal::PatchAges;
 
 namespace {
@@ -162,13 +160,13 @@ private:
 template <typename REAL>
 class PointMaker {
 public:
-    PointMaker(RefinedCells &cells, int faceSize, int level, PatchSummer<REAL> &summer)
-        : _cells(cells), _faceSize(faceSize), _level(level), _summer(summer) {}
+    PointMaker(RefinedCells &cells, FaceCells const &face, int level, PatchSummer<REAL> &summer)
+        : _cells(cells), _face(face), _level(level), _summer(summer) {}
 
     void Make(std::size_t cell, CornerAges const &ages) {
         bool const isWhole = _cells[cell].GetLevel() == 0 || _cells[cell].GetType().IsWhole();
         int const numLevels = _level - _cells[cell].GetLevel();
-        if (!_summer.SkipUnlessWanted(isWhole ? GetNumFacePatches(_faceSize, numLevels)
+        if (!_summer.SkipUnlessWanted(isWhole ? GetNumFacePatches(_face, numLevels)
                                               : getNumHalfPatches(numLevels))) {
             return;
         }
@@ -196,7 +194,7 @@ private:
     }
 
     RefinedCells &_cells;
-    int const _faceSize;
+    FaceCells const _face;
     int const _level;
     PatchSummer<REAL> &_summer;
     std::vector<REAL> _values;
@@ -229,9 +227,9 @@ Quadrilateral findInKite(Pair const &coords, double m) {
 
 } // namespace
 
-int GetNumFacePatches(int size, int level) {
+int GetNumFacePatches(FaceCells const &face, int level) {
     // A sector has 1 + 4 + 16 ... half cells.
-    return GetNumCellPatches(CellKind::Whole, size) + size * (getNumHalfPatches(level) - 1) / 3;
+    return face.GetNumPatches() + face.faceSize * (getNumHalfPatches(level) - 1) / 3;
 }
 
 namespace {
@@ -244,9 +242,88 @@ constexpr Linear kFromSectorTo[6] = {{{{-0.5, 0.5}, {-1, -1}}}, {{{-1, -0.5}, {0
                                      {{{-0.5, -1}, {1, 0}}},    {{{0.5, -0.5}, {1, 1}}},
                                      {{{1, 0.5}, {0, 1}}},      {{{0.5, 1}, {-1, 0}}}};
 
+// The kite with these corners in the plane that has a place.
+Quadrilateral findInKite(Pair const (&corners)[4], Pair const &place) {
+    // A + s B + t C + s t D, by Newton's method.
+    Pair b;
+    Pair c;
+    Pair d;
+    for (std::size_t i = 0; i < 2; ++i) {
+        b[i] = corners[1][i] - corners[0][i];
+        c[i] = corners[3][i] - corners[0][i];
+        d[i] = corners[2][i] - corners[1][i] - c[i];
+    }
+    Quadrilateral in = {0.5, 0.5, {}, d};
+    constexpr int kMaxSteps = 20;
+    constexpr double kConverged = 1e-14;
+    for (int step = 0; step < kMaxSteps; ++step) {
+        Pair missing;
+        for (std::size_t i = 0; i < 2; ++i) {
+            in.bySt[i] = {b[i] + in.t * d[i], c[i] + in.s * d[i]};
+            missing[i] = place[i] - (corners[0][i] + in.s * in.bySt[i][0] + in.t * c[i]);
+        }
+        auto const &[x, y] = in.bySt;
+        double const determinant = x[0] * y[1] - x[1] * y[0];
+        double const stepS = (missing[0] * y[1] - x[1] * missing[1]) / determinant;
+        double const stepT = (x[0] * missing[1] - missing[0] * y[0]) / determinant;
+        in.s += stepS;
+        in.t += stepT;
+        if (std::abs(stepS) + std::abs(stepT) < kConverged) {
+            break;
+        }
+    }
+    return in;
+}
+
+// From the coordinates in a sector of a face whose halves are kites: in the plane of a regular polygon around 0.
+Quadrilateral findInCutFace(FaceCells const &face, int sector, Pair const &coords, int &patch,
+                            Linear &linear) {
+    double const unit = 2 * FarExt::internal::kPi / face.faceSize;
+    auto const getVertex = [&](int i) { return Pair{std::cos(unit * i), std::sin(unit * i)}; };
+    Pair const start = getVertex(sector);
+    Pair const end = getVertex(sector + 1);
+    linear = {{{start[0], end[0]}, {start[1], end[1]}}};
+    Pair const place = CellMap{{linear[0], linear[1]}, {0, 0}}.Apply(coords);
+    int const half = face.GetHalfOfEdge(sector);
+    int const size = face.GetNumCorners(half);
+    auto const getCorner = [&](int i) { return getVertex(face.GetLocal(half, i % size)); };
+    auto const getMiddle = [](Pair const &p, Pair const &q) {
+        return Pair{0.5 * (p[0] + q[0]), 0.5 * (p[1] + q[1])};
+    };
+    // The diagonal is the first side.
+    auto const getMiddleOfSide = [&](int i) {
+        return i % size == 0 ? Pair{0, 0} : getMiddle(getCorner(i), getCorner(i + 1));
+    };
+    Pair const across = getMiddle(getCorner((size + 1) / 2), getCorner(size / 2 + 1));
+    Pair const center = {across[0] / 3, across[1] / 3};
+    auto const cross = [&](Pair const &to) {
+        return (to[0] - center[0]) * (place[1] - center[1]) -
+               (to[1] - center[1]) * (place[0] - center[0]);
+    };
+    int kite = 0;
+    double best = -1;
+    for (int i = 0; i < size; ++i) {
+        double const inside =
+            std::min(cross(getMiddleOfSide(i + size - 1)), -cross(getMiddleOfSide(i)));
+        if (i == 0 || inside > best) {
+            best = inside;
+            kite = i;
+        }
+    }
+    patch = (half == 0 ? 0 : face.GetNumPatches(0)) + kite;
+    Pair const corners[4] = {getCorner(kite), getMiddleOfSide(kite), center,
+                             getMiddleOfSide(kite + size - 1)};
+    return findInKite(corners, place);
+}
+
 // From the coordinates in the sector of a whole cell to those that the shape of its patches is given by: the
 // number of the patch among those of the cell, where the place is in it, and the map between them.
-Quadrilateral findInWhole(int size, int sector, Pair const &coords, int &patch, Linear &linear) {
+Quadrilateral findInWhole(FaceCells const &face, int sector, Pair const &coords, int &patch,
+                          Linear &linear) {
+    int const size = face.faceSize;
+    if (face.IsCut() && face.HasKites(0)) {
+        return findInCutFace(face, sector, coords, patch, linear);
+    }
     auto const map = [&](Pair const &toStart, Pair const &toEnd, Pair const &center) {
         linear = {{{toStart[0], toEnd[0]}, {toStart[1], toEnd[1]}}};
         return CellMap{{linear[0], linear[1]}, center}.Apply(coords);
@@ -297,7 +374,9 @@ struct ByUv {
 
 } // namespace
 
-PatchPlace FindPatchPlace(BfrPlace const &ofFace, int size, int level, int numDerivatives) {
+PatchPlace FindPatchPlace(BfrPlace const &ofFace, FaceCells const &face, int level,
+                          int numDerivatives) {
+    int const size = face.faceSize;
     int const sector = ofFace.point.sector;
     Pair coords = ofFace.point.coords;
     int left = level;
@@ -311,11 +390,11 @@ PatchPlace FindPatchPlace(BfrPlace const &ofFace, int size, int level, int numDe
     // Each step halves cells, but that from the sector to the half cell, which is part of the map.
     int const numHalvings = left == 0 ? level : level - 1;
     if (left == 0) {
-        in = findInWhole(size, sector, coords, place.patch, linear);
+        in = findInWhole(face, sector, coords, place.patch, linear);
     } else {
         --left;
         coords = HalfCell::kFromSector.Apply(coords);
-        place.patch = GetNumFacePatches(size, left) + sector * getNumHalfPatches(left);
+        place.patch = GetNumFacePatches(face, left) + sector * getNumHalfPatches(left);
         int turn = 0;
         while (left > 0) {
             --left;
@@ -361,7 +440,7 @@ namespace {
 
 // From the control points of a face that few are alike.
 template <typename TYPE, typename REAL>
-void makePoints(TYPE const &type, int faceSize, int level, REAL const *control, int size,
+void makePoints(TYPE const &type, FaceCells const &face, int level, REAL const *control, int size,
                 std::ptrdiff_t stride, PatchSummer<REAL> &summer) {
     // Their memory is kept for the next face.
     static thread_local RefinedCells cells;
@@ -372,8 +451,8 @@ void makePoints(TYPE const &type, int faceSize, int level, REAL const *control, 
         packed.insert(packed.end(), point, point + size);
     }
     cells.SetBase(type, packed.data(), size);
-    PointMaker<REAL>(cells, faceSize, level, summer)
-        .Make(RefinedCells::kBase, CornerAges(std::size_t(faceSize), -1));
+    PointMaker<REAL>(cells, face, level, summer)
+        .Make(RefinedCells::kBase, CornerAges(std::size_t(face.faceSize), -1));
 }
 
 } // namespace
@@ -384,12 +463,12 @@ void MakeFacePatchPoints(BaseType const &type, int faceSize, int level, REAL con
                          REAL *points) {
     PatchSummer<REAL> summer(wanted, size, stride, points);
     if (PlainFaceType const *const plain = type.GetPlain()) {
-        makePoints(*plain, faceSize, level, control, size, stride, summer);
+        makePoints(*plain, type.GetFaceCells(faceSize), level, control, size, stride, summer);
     } else if (type.IsInLattice()) {
         summer.SumUp(getMatrix<REAL>(*type, 0, CornerAges(std::size_t(faceSize), -1), level),
                      control, stride);
     } else {
-        makePoints(*type, faceSize, level, control, size, stride, summer);
+        makePoints(*type, type.GetFaceCells(faceSize), level, control, size, stride, summer);
     }
 }
 

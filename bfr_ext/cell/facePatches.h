@@ -4,7 +4,7 @@
 
 #include "bfrPlace.h"
 
-#include "far_ext/patch/patchBuilder.h"
+#include "far_ext/patch/cellPatchPoints.h"
 
 #include <cstddef>
 #include <vector>
@@ -19,10 +19,14 @@ using FarExt::internal::kNumPatchPoints;
 inline constexpr int kFirstPatchLevel = 2;
 inline constexpr int kLastPatchLevel = 6;
 
-/// \brief How many Gregory patches the cells of a level are in a base face of \p size sides.
+using FarExt::internal::FaceCells;
+
+/// \brief How many Gregory patches the cells of a level are in a base face.
 ///
 /// They are in the order of the cells: depth first, with children in the order of RefineCell().
-int GetNumFacePatches(int size, int level);
+///
+/// \param face  the cells that it is itself
+int GetNumFacePatches(FaceCells const &face, int level);
 
 /// A place in one of the patches of a face; its derivatives are there as far as they were asked for.
 struct PatchPlace {
@@ -33,9 +37,9 @@ struct PatchPlace {
     Pair second[3]; ///< of (s, t), by u twice, by u and v, by v twice
 };
 
-/// Finds the patch of a place of a base face of \p size sides, with derivatives as far as \p numDerivatives asks:
-/// 0, 1 or 2.
-PatchPlace FindPatchPlace(BfrPlace const &ofFace, int size, int level, int numDerivatives);
+/// Finds the patch of a place of a base face, with derivatives as far as \p numDerivatives asks: 0, 1 or 2.
+PatchPlace FindPatchPlace(BfrPlace const &ofFace, FaceCells const &face, int level,
+                          int numDerivatives);
 
 /// \brief Makes the points of patches of a face from its control points.
 ///

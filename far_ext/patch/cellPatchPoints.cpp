@@ -17,35 +17,40 @@ namespace {
 using CornerWeights = std::vector<double>;
 
 // The corners of the patches of a cell, each four, in terms of those of the cell.
-std::vector<CornerWeights> findPatchCorners(CellKind kind, int numCorners) {
+std::vector<CornerWeights> findPatchCorners(CellPatch const &cell) {
+    int const numCorners = cell.GetNumCorners();
     std::vector<CornerWeights> corners;
     auto const add = [&](std::vector<int> const &ofCell) {
         corners.emplace_back(std::size_t(numCorners));
         for (int const corner : ofCell) {
-            corners.back()[std::size_t((corner + numCorners) % numCorners)] +=
-                1 / double(ofCell.size());
+            corners.back()[std::size_t(corner)] += 1 / double(ofCell.size());
         }
     };
-    if (kind == CellKind::Half || numCorners == 4) {
-        for (int i = 0; i < 4; ++i) {
-            add({i});
+    FaceCells const cells =
+        cell.kind == CellKind::Half ? FaceCells{numCorners, 0} : FindCellsOfBaseCell(cell);
+    for (int half = 0; half < (cells.IsCut() ? 2 : 1); ++half) {
+        int const size = cells.GetNumCorners(half);
+        std::vector<int> ofCell;
+        for (int i = 0; i < size; ++i) {
+            ofCell.push_back(cells.GetLocal(half, i));
         }
-    } else if (HasHalves(numCorners)) {
-        for (auto const &half : kHexagonHalves) {
-            for (int const corner : half) {
+        auto const at = [&](int i) { return ofCell[std::size_t((i + size) % size)]; };
+        if (!cells.HasKites(half)) {
+            for (int const corner : ofCell) {
                 add({corner});
             }
+            continue;
         }
-    } else {
-        std::vector<int> all(std::size_t(numCorners), 0);
-        for (int i = 0; i < numCorners; ++i) {
-            all[std::size_t(i)] = i;
-        }
-        for (int i = 0; i < numCorners; ++i) {
-            add({i});
-            add({i, i + 1});
-            add(all);
-            add({i - 1, i});
+        // As VaryingPoints has it.
+        std::vector<int> const center =
+            cells.IsCut()
+                ? std::vector<int>{at(0), at(0), at(1), at(1), at((size + 1) / 2), at(size / 2 + 1)}
+                : ofCell;
+        for (int i = 0; i < size; ++i) {
+            add({at(i)});
+            add({at(i), at(i + 1)});
+            add(center);
+            add({at(i - 1), at(i)});
         }
     }
     return corners;
@@ -57,7 +62,7 @@ void findBilinearPoints(CellPatch const &cell, std::vector<double> &rows) {
     constexpr double kPlaces[5][2] = {
         {0, 0}, {kThird, 0}, {0, kThird}, {kThird, kThird}, {kThird, kThird}};
     std::size_t const numPoints = cell.patch.sources.size();
-    std::vector<CornerWeights> const corners = findPatchCorners(cell.kind, cell.GetNumCorners());
+    std::vector<CornerWeights> const corners = findPatchCorners(cell);
     rows.assign(corners.size() * 5 * numPoints, 0.0);
     for (std::size_t i = 0; i < corners.size(); ++i) {
         std::size_t const patch = i / 4 * 4;
@@ -78,6 +83,14 @@ void findBilinearPoints(CellPatch const &cell, std::vector<double> &rows) {
 }
 
 } // namespace
+
+FaceCells FindCellsOfBaseCell(CellPatch const &cell) {
+    LimitPatch const &patch = cell.patch;
+    int const size = cell.GetNumCorners();
+    bool const isCrossed = !patch.crossedFaces.empty() && patch.crossedFaces.front().face == 0 &&
+                           Sdc::Crease::IsInfinite(patch.diagonalSharpness.front());
+    return isCrossed ? FaceCells{size, patch.crossedFaces.front().end} : MakeFaceCells(size);
+}
 
 CallStatus FindCellPatchPoints(CellPatch const &cell, Sdc::Options sdcOptions,
                                HexSchemeOptions const &schemeOptions, Interpolation interpolation,

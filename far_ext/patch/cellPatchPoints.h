@@ -10,14 +10,8 @@
 
 namespace OpenSubdivHex::FarExt::internal {
 
-/// The Gregory patches of a cell: a whole hexagon is one for each half, each other cell of four corners is one, and all
-/// others are a kite for each corner.
-constexpr int GetNumCellPatches(CellKind kind, int numCorners) {
-    return kind == CellKind::Half  ? 1
-           : HasHalves(numCorners) ? 2
-           : numCorners == 4       ? 1
-                                   : numCorners;
-}
+/// The cells that the face of a whole cell is for its patches.
+OPENSUBDIVHEX_API FaceCells FindCellsOfBaseCell(CellPatch const &cell);
 
 /// \brief Finds the points of the patches of a whole or half cell as sums of the vertices of its patch.
 ///

@@ -52,7 +52,7 @@ FaceCells FindFaceCells(Level const &level, Index face) {
         crossed && Sdc::Crease::IsInfinite(level.GetDiagonalSharpness(face))) {
         return {size, crossed->end};
     }
-    return {size, HasHalves(size) ? kDiagonalEnd : 0};
+    return MakeFaceCells(size);
 }
 
 PatchCells::PatchCells(MeshLevels const &mesh, int level) : _firstLevel(level) {

@@ -32,6 +32,8 @@ struct FaceCells {
     }
     /// The patches of a cell.
     int GetNumPatches(int half) const { return HasKites(half) ? GetNumCorners(half) : 1; }
+    /// Those of the face.
+    int GetNumPatches() const { return GetNumPatches(0) + (IsCut() ? GetNumPatches(1) : 0); }
     /// The place in the face of a corner of a cell, or of the edge that is so many sides behind its first, which is the
     /// diagonal where the face is cut.
     int GetLocal(int half, int corner) const {
@@ -49,6 +51,10 @@ struct FaceCells {
     int diagonalEnd; ///< the vertex where the diagonal between the halves ends; 0: there is none
 };
 
+/// Those of a face without a sharp diagonal.
+constexpr FaceCells MakeFaceCells(int faceSize) {
+    return {faceSize, HasHalves(faceSize) ? kDiagonalEnd : 0};
+}
 /// Those of a face.
 FaceCells FindFaceCells(Level const &level, Far::Index face);
 /// Whether a cell is half of a regular polygon with its first side across.
