@@ -89,7 +89,7 @@ private:
         }
         Index const before = cuts[1] - cuts[0];
         Index const behind = fan.isClosed ? fan.GetSize() - before : before;
-        if (std::min(before, behind) < 2 || std::max(before, behind) > kMaxPassedFaces) {
+        if (before != kNumPassedFaces || behind != kNumPassedFaces) {
             return false;
         }
         auto const passesValues = [&](FVarChannel const &channel) {

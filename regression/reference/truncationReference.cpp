@@ -59,7 +59,7 @@ ReferenceCuts FindCuts(TaggedMesh const &mesh, std::vector<TaggedMesh> const &va
                 result.cuts[corner.face][corner.place] = true;
             }
         }
-        // A line goes through a vertex with two faces and more on each side where nothing else is.
+        // A line goes through a vertex with three faces on each side where nothing else is.
         bool isPassed = fans.size() == 1 && !isSharp && GetRule(mesh, v) == TaggedRule::Crease;
         if (isPassed) {
             std::vector<Side> const &corners = fans[0].corners;
@@ -75,13 +75,11 @@ ReferenceCuts FindCuts(TaggedMesh const &mesh, std::vector<TaggedMesh> const &va
             }
             int const size = int(corners.size());
             if (!fans[0].isClosed) {
-                isPassed = isPassed && ends.size() == 1 && 2 <= size && size <= 64;
+                isPassed = isPassed && ends.size() == 1 && size == 3;
             } else if (ends.size() != 2) {
                 isPassed = false;
             } else {
-                int const before = ends[1] - ends[0];
-                isPassed = isPassed && 2 <= before && before <= 64 && 2 <= size - before &&
-                           size - before <= 64;
+                isPassed = isPassed && ends[1] - ends[0] == 3 && size == 6;
                 for (TaggedMesh const &valueMesh : values) {
                     bool const isSeam[] = {edgeOf(valueMesh, corners[ends[0]]).sides.size() == 1,
                                            edgeOf(valueMesh, corners[ends[1]]).sides.size() == 1};
