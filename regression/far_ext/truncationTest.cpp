@@ -288,7 +288,8 @@ TEST(Truncation, CreasesPassVertices) {
     }
 }
 
-// One face on a side, another sharp edge, a sharp vertex, a seam alone, or a value that stays: the vertex is kept.
+// The vertex is kept where a side has one face or very many, and beside another sharp edge, a sharp vertex, a hole or a
+// seam along one of the edges alone; and if the sides differ, where they have something else to keep apart.
 TEST(Truncation, KeepsVerticesOfOtherLines) {
     auto const isKept = [](Shape const &shape) {
         auto const refiner = createRefiner(shape, ReferenceMask::Smooth, 1);
@@ -299,6 +300,13 @@ TEST(Truncation, KeepsVerticesOfOtherLines) {
     EXPECT_TRUE(isKept(makeCreasedDisc(1, 4, 10)));
     EXPECT_FALSE(isKept(makeCreasedDisc(64, 2, 10)));
     EXPECT_TRUE(isKept(makeCreasedDisc(65, 2, 10)));
+    for (auto const &[before, behind] : {std::pair(3, 3), {2, 4}}) {
+        Shape withHoles = makeCreasedDisc(before, behind, 10);
+        for (int face = 0; face < before; ++face) {
+            withHoles.holeFaces.push_back(face);
+        }
+        EXPECT_EQ(isKept(withHoles), before != behind);
+    }
     Shape corner = passed;
     corner.creaseVertexPairs.insert(corner.creaseVertexPairs.end(), {0, 2});
     corner.creaseSharpness.push_back(10);
