@@ -28,10 +28,17 @@ struct Distances {
 
 // Calls add(place, isCorner) for places of all patches: of vertices and centres of faces, and inside.
 template <typename ADD>
-void forEachPlace(Far::PatchTable const &table, ADD const &add) {
+void forEachPlace(Far::PatchTable const &table, PatchMap const &map,
+                  FarExt::TopologyLevel const &surfaceLevel, ADD const &add) {
     for (int patch = 0; patch < table.GetNumPatchesTotal(); ++patch) {
         bool const isKite = table.GetPatchParam(PatchMap::GetHandle(patch)).NonQuadRoot();
-        for (int i = 0; i < 4; i += isKite ? 2 : 1) {
+        // Where kites meet in the centre of a face there is a limit, but not inside of a half.
+        int const size = surfaceLevel.GetFaceVertices(map.GetFace(patch)).size();
+        double const center[2] = {size == 3 ? 1.0 / 3 : 0.5,
+                                  size == 3 ? 1.0 / 3 : 0.5 / std::tan(EIGEN_PI / size)};
+        auto const &coords = map.GetCoords(patch);
+        bool const isAtCenter = std::hypot(coords[4] - center[0], coords[5] - center[1]) < 1e-9;
+        for (int i = 0; i < (isKite && !isAtCenter ? 1 : 4); i += isKite ? 2 : 1) {
             add(PatchMap::Place{patch, i == 1 || i == 2 ? 1.0 : 0.0, i >= 2 ? 1.0 : 0.0}, true);
         }
         for (double s : {0.0, 0.7}) {
@@ -53,25 +60,28 @@ Distances measure(Shape const &shape, TopologyRefiner const &refiner, int depth)
     PatchMap const map(refiner, depth);
     SurfaceSet<double> const surfaces(refiner, shape.positions);
     int number = 0;
-    forEachPlace(patches.GetTable(), [&](PatchMap::Place const &place, bool isCorner) {
-        int const face = map.GetFace(place.patch);
-        if (!surfaces[face].IsValid()) {
-            return;
-        }
-        double uv[2];
-        map.GetFacePlace(place, &uv[0], &uv[1]);
-        SurfacePoint const expected = surfaces.Evaluate(face, uv);
-        PatchPoint const point = patches.Evaluate(place.patch, place.s, place.t);
-        Eigen::Vector3d const difference = point.p - Eigen::Vector3d(expected.p.data());
-        if (isCorner) {
-            distances.largestAtCorners =
-                std::max(distances.largestAtCorners, difference.norm() / size);
-            return;
-        }
-        double const distance = difference.dot(point.GetNormal()) / size;
-        distances.meanSquare += distance * distance;
-        ++number;
-    });
+    FarExt::TopologyLevel const &surfaceLevel =
+        refiner.GetLevel(refiner.GetHexSchemeOptions().GetSurfaceLevel());
+    forEachPlace(
+        patches.GetTable(), map, surfaceLevel, [&](PatchMap::Place const &place, bool isCorner) {
+            int const face = map.GetFace(place.patch);
+            if (!surfaces[face].IsValid()) {
+                return;
+            }
+            double uv[2];
+            map.GetFacePlace(place, &uv[0], &uv[1]);
+            SurfacePoint const expected = surfaces.Evaluate(face, uv);
+            PatchPoint const point = patches.Evaluate(place.patch, place.s, place.t);
+            Eigen::Vector3d const difference = point.p - Eigen::Vector3d(expected.p.data());
+            if (isCorner) {
+                distances.largestAtCorners =
+                    std::max(distances.largestAtCorners, difference.norm() / size);
+                return;
+            }
+            double const distance = difference.dot(point.GetNormal()) / size;
+            distances.meanSquare += distance * distance;
+            ++number;
+        });
     distances.meanSquare = std::sqrt(distances.meanSquare / std::max(number, 1));
     return distances;
 }
@@ -100,7 +110,7 @@ void expectValues(FVarChannel const &channel, TopologyRefiner const &refiner,
     }
     double sum = 0;
     int numPlaces = 0;
-    forEachPlace(table, [&](PatchMap::Place const &place, bool isCorner) {
+    forEachPlace(table, map, factory.GetLevel(), [&](PatchMap::Place const &place, bool isCorner) {
         BfrExt::Surface<double> surface;
         ASSERT_TRUE(factory.InitFaceVaryingSurface(map.GetFace(place.patch), &surface, number));
         double uv[2];

@@ -270,7 +270,7 @@ TEST(SurfacePlaces, InPatchesChangeAsTheirDerivativesSay) {
             std::vector<bool> isMet(std::size_t(BfrExt::internal::GetNumFacePatches(cells, level)));
             std::vector<Uv> places = findPlaces(size, 400);
             // Those near the centre, whose patches are of the whole cell.
-            std::vector<Uv> const nearCenter = findPlaces(size, 200, 0.02);
+            std::vector<Uv> const nearCenter = findPlaces(size, 2000, 0.25);
             places.insert(places.end(), nearCenter.begin(), nearCenter.end());
             for (Uv const &uv : places) {
                 PatchPlace const at = find(uv);
