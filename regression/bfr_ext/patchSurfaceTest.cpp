@@ -35,7 +35,7 @@ void forEachPlace(Far::PatchTable const &table, PatchMap const &map,
         // Where kites meet in the centre of a face there is a limit, but not inside of a half.
         int const size = surfaceLevel.GetFaceVertices(map.GetFace(patch)).size();
         double const center[2] = {size == 3 ? 1.0 / 3 : 0.5,
-                                  size == 3 ? 1.0 / 3 : 0.5 / std::tan(EIGEN_PI / size)};
+                                  size == 3 ? 1.0 / 3 : 0.5 / std::tan(double(EIGEN_PI) / size)};
         auto const &coords = map.GetCoords(patch);
         bool const isAtCenter = std::hypot(coords[4] - center[0], coords[5] - center[1]) < 1e-9;
         for (int i = 0; i < (isKite && !isAtCenter ? 1 : 4); i += isKite ? 2 : 1) {
