@@ -28,8 +28,6 @@ using FarExt::internal::FVarLevel;
 using FarExt::internal::ParallelForRange;
 using FarExt::internal::ParallelSums;
 
-constexpr int kNumHalfCorners = FarExt::HexIndexing::kNumBoundaryEFaceCorners;
-
 // The parts in which a face is drawn: bits for its halves, or all of it.
 enum Parts : unsigned char { kBothHalves = 3, kWhole = 4 };
 
@@ -117,7 +115,7 @@ private:
 
     PolygonPlace getSize(DrawnRun const &run) const {
         if (run.half >= 0) {
-            return {1, kNumHalfCorners};
+            return {1, std::size_t(getNumCorners(run.begin, run.half))};
         }
         return {std::size_t(run.end - run.begin),
                 std::size_t(_mesh.faceFirstCorner[run.end] - _mesh.faceFirstCorner[run.begin])};
@@ -188,7 +186,7 @@ private:
         std::size_t polygon = place.polygon;
         for (Index face = run.begin; face < run.end; ++face, ++polygon) {
             Index const baseFace = _map.GetBaseFace(face, half);
-            _result.sizes[polygon] = run.half < 0 ? _mesh.GetFaceSize(face) : kNumHalfCorners;
+            _result.sizes[polygon] = getNumCorners(face, run.half);
             _result.faces[polygon] = face;
             _result.baseFaces[polygon] = baseFace;
             if (!_options.labels.empty()) {
@@ -202,13 +200,13 @@ private:
         if (!_options.splitVertices) {
             Index const first = _mesh.faceFirstCorner[run.begin];
             copyPart({_mesh.faceVerts.data() + first, _mesh.faceFirstCorner[run.end] - first},
-                     run.half, vertices);
+                     run.half, _mesh.GetDiagonalEnd(run.begin), vertices);
             addOffset(vertices, getSize(run).corner);
         }
         if (_options.sides || !_options.fvarChannels.empty() || _options.generateBaseCoords) {
             std::size_t corner = place.corner;
             for (Index face = run.begin; face < run.end; ++face) {
-                int const size = run.half < 0 ? _mesh.GetFaceSize(face) : kNumHalfCorners;
+                int const size = getNumCorners(face, run.half);
                 writeFurther(face, run.half, size, corner);
                 corner += std::size_t(size);
             }
@@ -228,7 +226,8 @@ private:
     // Attributes of corners besides vertices.
     void writeFurther(Index face, int half, int size, std::size_t corner) {
         for (int i = 0; i < size && _options.sides; ++i) {
-            int const local = half < 0 ? i : FarExt::kHexagonHalves[half][i];
+            int const local =
+                half < 0 ? i : FarExt::GetPlaceInHalves(half, i, _mesh.GetDiagonalEnd(face));
             _result.sides[corner + std::size_t(i)] =
                 _options.sides->FindSide(_level, face, local, std::max(half, 0));
         }
@@ -241,14 +240,21 @@ private:
         }
     }
 
+    // Of a face, or of a half of it.
+    int getNumCorners(Index face, int half) const {
+        int const size = _mesh.GetFaceSize(face);
+        return half < 0 ? size : FarExt::GetHalfSize(half, size, _mesh.GetDiagonalEnd(face));
+    }
+
+    static void copyAll(ConstIndexArray from, int *to) { std::copy(from.begin(), from.end(), to); }
     // Copies all, or those of a half, of what the corners of a face have.
-    static void copyPart(ConstIndexArray from, int half, int *to) {
+    static void copyPart(ConstIndexArray from, int half, int diagonalEnd, int *to) {
         if (half < 0) {
-            std::copy(from.begin(), from.end(), to);
+            copyAll(from, to);
             return;
         }
-        for (int local : FarExt::kHexagonHalves[half]) {
-            *to++ = from[local];
+        for (int i = 0; i < FarExt::GetHalfSize(half, from.size(), diagonalEnd); ++i) {
+            *to++ = from[FarExt::GetPlaceInHalves(half, i, diagonalEnd)];
         }
     }
 
@@ -258,11 +264,11 @@ private:
             FVarLevel const &values = _level.GetHierarchy()
                                           .channels[std::size_t(channel)]
                                           .levels[std::size_t(_level.GetDepth())];
-            copyPart(values.values->GetFaceVertices(values.valueFaces[face]), -1, to);
+            copyAll(values.values->GetFaceVertices(values.valueFaces[face]), to);
         } else if (half >= 0 && _level.IsFaceFVarSplit(face, channel)) {
-            copyPart(_level.GetFaceFVarValues(face, channel, half), -1, to);
+            copyAll(_level.GetFaceFVarValues(face, channel, half), to);
         } else {
-            copyPart(_level.GetFaceFVarValues(face, channel), half, to);
+            copyPart(_level.GetFaceFVarValues(face, channel), half, _mesh.GetDiagonalEnd(face), to);
         }
     }
 

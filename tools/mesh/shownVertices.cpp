@@ -50,8 +50,10 @@ std::vector<int> FindShownVertices(FarExt::TopologyLevel const &level) {
             if (isShown[0] && isShown[1]) {
                 std::for_each(vertices.begin(), vertices.end(), [&](int v) { marks.Add(v); });
             } else if (isShown[0] || isShown[1]) {
-                for (int const corner : FarExt::kHexagonHalves[isShown[0] ? 0 : 1]) {
-                    marks.Add(vertices[corner]);
+                int const half = isShown[0] ? 0 : 1;
+                int const end = level.GetFaceDiagonalEnd(face);
+                for (int i = 0; i < FarExt::GetHalfSize(half, vertices.size(), end); ++i) {
+                    marks.Add(vertices[FarExt::GetPlaceInHalves(half, i, end)]);
                 }
             }
         }
