@@ -49,11 +49,11 @@ struct Polygon {
     }
 };
 
-Polygon makeFace(int size) {
-    internal::BasePolygon const base(size);
+Polygon makeFace(FaceShape shape) {
+    internal::BasePolygon const base(shape);
     std::array<double, 2> const center = base.GetCenter();
-    Polygon polygon = {{}, false};
-    for (int i = 0; i < size; ++i) {
+    Polygon polygon = {{}, shape.isHalf};
+    for (int i = 0; i < shape.size; ++i) {
         std::array<double, 2> const corner = base.GetCorner(i);
         polygon.corners.push_back({center[0] + corner[0], center[1] + corner[1]});
     }
@@ -107,28 +107,6 @@ int findKite(Polygon const &face, Point place) {
 Point evaluate(std::array<double, 8> const &q, double s, double t) {
     auto const at = [&](std::size_t i) { return Point{q[2 * i], q[2 * i + 1]}; };
     return (1 - t) * ((1 - s) * at(0) + s * at(1)) + t * ((1 - s) * at(3) + s * at(2));
-}
-
-// The sector of the polygon that has a place, or is nearest, and where it is there.
-internal::SectorPoint findSectorPoint(internal::BasePolygon const &polygon, Point place,
-                                      int &sector) {
-    auto const [centerU, centerV] = polygon.GetCenter();
-    Point const fromCenter = place - Point{centerU, centerV};
-    internal::SectorPoint best;
-    for (int i = 0; i < polygon.GetSize(); ++i) {
-        auto const [startU, startV] = polygon.GetCorner(i);
-        auto const [endU, endV] = polygon.GetCorner((i + 1) % polygon.GetSize());
-        Point const start = {startU, startV};
-        Point const end = {endU, endV};
-        double const determinant = cross(start, end);
-        internal::SectorPoint const point = {cross(fromCenter, end) / determinant,
-                                             cross(start, fromCenter) / determinant};
-        if (i == 0 || std::min(point.a, point.b) > std::min(best.a, best.b)) {
-            best = point;
-            sector = i;
-        }
-    }
-    return best;
 }
 
 // Newton's method: the quadrilaterals are convex, and not far from parallelograms.
@@ -238,7 +216,7 @@ private:
         }
         std::vector<Node> children = {makeNode(depth + 1, cell, isWhole)};
         for (int local = 0; local < size; ++local) {
-            bool const isLong = !isWhole && !isCut && local == kHalfFaceLongEdge;
+            bool const isLong = local == kHalfFaceLongEdge && level.IsHalfFace(cell.face);
             if (isLong || (isCut && GetHalfOfEdge(local) != cell.half)) {
                 continue; // of half faces the border, and what the other half has
             }
@@ -272,7 +250,7 @@ PatchMap::PatchMap(TopologyRefiner const &refiner, PatchTableFactory::Options op
     Level const &surface =
         refiner.GetLevel(refiner.GetHexSchemeOptions().GetSurfaceLevel()).GetLevel();
     for (Index face = 0; face < surface.numFaces; ++face) {
-        _faceSizes.push_back(surface.GetFaceSize(face));
+        _faceShapes.push_back(internal::GetFaceShape(surface, face));
     }
     TreeBuilder(*this, refiner, *cells);
 }
@@ -282,11 +260,11 @@ auto PatchMap::FindPlace(Index face, double u, double v) const -> Place {
     if (face < 0 || face >= GetNumFaces() || !std::isfinite(u) || !std::isfinite(v)) {
         return place;
     }
-    int const faceSize = _faceSizes[std::size_t(face)];
+    FaceShape const shape = _faceShapes[std::size_t(face)];
     auto const coords =
-        internal::FindInPlane(internal::MakeFaceParameterization(faceSize), {u, v}).coords;
+        internal::FindInPlane(internal::MakeFaceParameterization(shape.size), {u, v}).coords;
     Point const wanted = {coords[0], coords[1]};
-    Polygon cell = makeFace(faceSize);
+    Polygon cell = makeFace(shape);
     Node node = _roots[std::size_t(face)];
     while (node.firstChild != Far::INDEX_INVALID) {
         Polygon child;
@@ -314,13 +292,13 @@ auto PatchMap::FindPlace(Index face, double u, double v) const -> Place {
 
 void PatchMap::GetFacePlace(Place const &place, double *u, double *v) const {
     Point const point = evaluate(GetCoords(place.patch), place.s, place.t);
-    int const size = _faceSizes[std::size_t(GetFace(place.patch))];
+    FaceShape const shape = _faceShapes[std::size_t(GetFace(place.patch))];
     std::array<double, 2> uv = {point.u, point.v};
-    auto const parameterization = internal::MakeFaceParameterization(size);
+    auto const parameterization = internal::MakeFaceParameterization(shape.size);
     if (parameterization.HasSubFaces()) {
         int sector = 0;
-        internal::BasePolygon const polygon(size);
-        internal::SectorPoint const inSector = findSectorPoint(polygon, point, sector);
+        internal::BasePolygon const polygon(shape);
+        internal::SectorPoint const inSector = polygon.FindSector(uv, sector);
         uv = internal::FindFaceCoords(parameterization, polygon, sector, inSector);
     }
     *u = uv[0];

@@ -2,6 +2,7 @@
 #ifndef OPENSUBDIVHEX_FAR_EXT_PATCH_TABLE_FACTORY_H
 #define OPENSUBDIVHEX_FAR_EXT_PATCH_TABLE_FACTORY_H
 
+#include "faceShape.h"
 #include "topologyRefiner.h"
 
 #include <opensubdiv/far/patchTable.h>
@@ -236,7 +237,7 @@ private:
     };
     class TreeBuilder;
 
-    std::vector<int> _faceSizes;
+    std::vector<FaceShape> _faceShapes;
     std::vector<Node> _roots; // by face
     std::vector<Node> _children;
     std::vector<Patch> _patches;

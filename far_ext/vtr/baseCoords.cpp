@@ -104,8 +104,9 @@ bool FindBaseCoords(MeshLevels const &mesh, int baseDepth, int depth, Cell cell,
         return false;
     }
     PlacedCell const placed = place(mesh, baseDepth, depth, cell);
-    int const size = mesh.levels[std::size_t(baseDepth)].GetFaceSize(placed.baseFace);
-    BasePolygon const polygon(size);
+    FaceShape const shape = GetFaceShape(mesh.levels[std::size_t(baseDepth)], placed.baseFace);
+    int const size = shape.size;
+    BasePolygon const polygon(shape);
     auto const parameterization = MakeFaceParameterization(size);
     auto const writePoint = [&](int sector, SectorPoint point, REAL *at) {
         if (coordsOf == CoordsOf::Plane) {
@@ -119,7 +120,10 @@ bool FindBaseCoords(MeshLevels const &mesh, int baseDepth, int depth, Cell cell,
     };
     if (placed.sector < 0) {
         for (int i = 0; i < size; ++i) {
-            writePoint(i, {placed.scale, 0}, uv + 2 * i);
+            bool const isAtEnd = shape.GetSectorOfCorner(i) != i;
+            writePoint(shape.GetSectorOfCorner(i),
+                       isAtEnd ? SectorPoint{0, placed.scale} : SectorPoint{placed.scale, 0},
+                       uv + 2 * i);
         }
         return true;
     }
