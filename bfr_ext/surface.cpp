@@ -94,10 +94,10 @@ void Surface<REAL>::BoundControlPointsFromMesh(REAL const meshPoints[],
 
 template <typename REAL>
 int Surface<REAL>::GetNumPatchPoints() const {
-    return IsValid()
-               ? GetNumControlPoints() + internal::kNumPatchPoints *
-                                             internal::GetNumFacePatches(GetFaceSize(), _patchLevel)
-               : 0;
+    return IsValid() ? GetNumControlPoints() +
+                           internal::kNumPatchPoints *
+                               internal::GetNumFacePatches(GetFaceShape(), _patchLevel)
+                     : 0;
 }
 
 template <typename REAL>
@@ -112,7 +112,7 @@ void Surface<REAL>::ComputePatchPoints(REAL patchPoints[], PointDescriptor const
     if (!IsValid()) {
         return;
     }
-    if (numPlaces >= internal::GetNumFacePatches(GetFaceSize(), _patchLevel)) {
+    if (numPlaces >= internal::GetNumFacePatches(GetFaceShape(), _patchLevel)) {
         ComputePatchPoints(patchPoints, patchPointDesc);
         return;
     }
@@ -135,16 +135,16 @@ void Surface<REAL>::computePatchPoints(REAL patchPoints[], PointDescriptor const
     }
     REAL *const points =
         patchPoints + std::ptrdiff_t(GetNumControlPoints()) * patchPointDesc.stride;
-    internal::MakeFacePatchPoints(GetFace().type, GetFaceSize(), _patchLevel, patchPoints,
+    internal::MakeFacePatchPoints(GetFace().type, GetFaceShape(), _patchLevel, patchPoints,
                                   patchPointDesc.size, patchPointDesc.stride, patches, points);
 }
 
 // The patch of a place, with derivatives.
 template <typename REAL>
 internal::PatchPlace Surface<REAL>::findPatchPlace(REAL const uv[2], int numDerivatives) const {
-    return internal::FindPatchPlace(
-        internal::FindBfrPlace(_parameterization, {double(uv[0]), double(uv[1])}, 0), GetFaceSize(),
-        _patchLevel, numDerivatives);
+    return internal::FindPatchPlace(internal::FindBfrPlace(_parameterization, GetFaceShape(),
+                                                           {double(uv[0]), double(uv[1])}, 0),
+                                    GetFaceShape(), _patchLevel, numDerivatives);
 }
 
 template <typename REAL>
@@ -185,7 +185,7 @@ template <typename REAL>
 void Surface<REAL>::evaluate(LevelTessellation const &tessellation, REAL const controlPoints[],
                              PointDescriptor const &pointDesc, REAL *const results[6],
                              PointDescriptor const &resultDesc) const {
-    if (IsValid() && tessellation.IsValid() && tessellation.GetFaceSize() == GetFaceSize()) {
+    if (IsValid() && tessellation.IsValid() && tessellation.GetFaceShape() == GetFaceShape()) {
         internal::FaceEvaluator<REAL>(GetFace(), controlPoints, pointDesc)
             .Evaluate(tessellation.GetData(), results, resultDesc);
     }
@@ -243,8 +243,8 @@ int Surface<REAL>::evaluateStencil(REAL const uv[2], int numDerivatives,
     }
     // Rounding of u and v matters more in larger polygons.
     double const tolerance = 2 * GetFaceSize() * double(std::numeric_limits<REAL>::epsilon());
-    internal::BfrPlace const place =
-        internal::FindBfrPlace(_parameterization, {double(uv[0]), double(uv[1])}, tolerance);
+    internal::BfrPlace const place = internal::FindBfrPlace(
+        _parameterization, GetFaceShape(), {double(uv[0]), double(uv[1])}, tolerance);
     CellStencil stencil(*GetFace().type);
     stencil.Find(place.point, numDerivatives > 0);
     copyWeights(stencil.GetWeights(), weights[0]);

@@ -46,12 +46,15 @@ PatchAges limitAges(int steps, CornerAges ages) {
     return {std::min(steps, PatchSite::kMaxSteps), std::move(ages)};
 }
 
-// Calls function(child, ages of its corners) for the children of a cell that makes so many.
+// Calls function(child, ages of its corners) for the children of a cell that makes so many; \p shape is that of a whole
+// cell, or of size 0.
 template <typename FUNCTION>
-void forEachChild(bool isWhole, int numChildren, CornerAges const &ages, FUNCTION const &function) {
+void forEachChild(FaceShape shape, int numChildren, CornerAges const &ages,
+                  FUNCTION const &function) {
     function(0, CornerAges(ages.size(), 0));
+    int const firstEdge = shape.size == 0 ? 1 : shape.GetFirstSector();
     for (int child = 1; child < numChildren; ++child) {
-        function(child, findEdgeAges(ages, std::size_t(isWhole ? child - 1 : child)));
+        function(child, findEdgeAges(ages, std::size_t(child - 1 + firstEdge)));
     }
 }
 
@@ -69,14 +72,15 @@ std::vector<std::vector<double>> findRows(CellType const &type, int steps, Corne
         return rows;
     }
     std::vector<CellType::Child> const &children = type.GetChildren();
-    forEachChild(type.IsWhole(), int(children.size()), ages, [&](int i, CornerAges const &ofChild) {
-        CellType::Child const &child = children[std::size_t(i)];
-        for (std::vector<double> const &row :
-             findRows(*child.type, steps + 1, ofChild, numLevels - 1)) {
-            rows.emplace_back();
-            child.step.ApplyLeft(row, rows.back());
-        }
-    });
+    forEachChild(type.GetShape(), int(children.size()), ages,
+                 [&](int i, CornerAges const &ofChild) {
+                     CellType::Child const &child = children[std::size_t(i)];
+                     for (std::vector<double> const &row :
+                          findRows(*child.type, steps + 1, ofChild, numLevels - 1)) {
+                         rows.emplace_back();
+                         child.step.ApplyLeft(row, rows.back());
+                     }
+                 });
     return rows;
 }
 
@@ -162,14 +166,14 @@ private:
 template <typename REAL>
 class PointMaker {
 public:
-    PointMaker(RefinedCells &cells, int faceSize, int level, PatchSummer<REAL> &summer)
-        : _cells(cells), _faceSize(faceSize), _level(level), _summer(summer) {}
+    PointMaker(RefinedCells &cells, int level, PatchSummer<REAL> &summer)
+        : _cells(cells), _level(level), _summer(summer) {}
 
     void Make(std::size_t cell, CornerAges const &ages) {
-        bool const isWhole = _cells[cell].GetLevel() == 0 || _cells[cell].GetType().IsWhole();
+        FaceShape const shape = _cells[cell].GetShape();
         int const numLevels = _level - _cells[cell].GetLevel();
-        if (!_summer.SkipUnlessWanted(isWhole ? GetNumFacePatches(_faceSize, numLevels)
-                                              : getNumHalfPatches(numLevels))) {
+        if (!_summer.SkipUnlessWanted(shape.size > 0 ? GetNumFacePatches(shape, numLevels)
+                                                     : getNumHalfPatches(numLevels))) {
             return;
         }
         if (_cells[cell].GetLevel() == RefinedCells::kFirstCommonLevel) {
@@ -178,7 +182,7 @@ public:
         }
         std::size_t const first = _cells.GetFirstChild(cell);
         std::size_t const numCells = _cells.GetSize();
-        forEachChild(isWhole, _cells.GetNumChildren(cell), ages,
+        forEachChild(shape, _cells.GetNumChildren(cell), ages,
                      [&](int child, CornerAges const &ofChild) {
                          Make(first + std::size_t(child), ofChild);
                          _cells.Drop(numCells);
@@ -196,7 +200,6 @@ private:
     }
 
     RefinedCells &_cells;
-    int const _faceSize;
     int const _level;
     PatchSummer<REAL> &_summer;
     std::vector<REAL> _values;
@@ -229,9 +232,10 @@ Quadrilateral findInKite(Pair const &coords, double m) {
 
 } // namespace
 
-int GetNumFacePatches(int size, int level) {
+int GetNumFacePatches(FaceShape shape, int level) {
     // A sector has 1 + 4 + 16 ... half cells.
-    return GetNumCellPatches(CellKind::Whole, size) + size * (getNumHalfPatches(level) - 1) / 3;
+    return GetNumCellPatches(shape.isHalf ? CellKind::HalfPolygon : CellKind::Whole, shape.size) +
+           shape.GetNumSectors() * (getNumHalfPatches(level) - 1) / 3;
 }
 
 namespace {
@@ -246,21 +250,24 @@ constexpr Linear kFromSectorTo[6] = {{{{-0.5, 0.5}, {-1, -1}}}, {{{-1, -0.5}, {0
 
 // From the coordinates in the sector of a whole cell to those that the shape of its patches is given by: the
 // number of the patch among those of the cell, where the place is in it, and the map between them.
-Quadrilateral findInWhole(int size, int sector, Pair const &coords, int &patch, Linear &linear) {
+Quadrilateral findInWhole(FaceShape shape, int sector, Pair const &coords, int &patch,
+                          Linear &linear) {
+    int const size = shape.size;
     auto const map = [&](Pair const &toStart, Pair const &toEnd, Pair const &center) {
         linear = {{{toStart[0], toEnd[0]}, {toStart[1], toEnd[1]}}};
         return CellMap{{linear[0], linear[1]}, center}.Apply(coords);
     };
-    if (size == 4) {
+    if (shape == FaceShape(4)) {
         constexpr Pair kCorners[4] = {{-0.5, -0.5}, {0.5, -0.5}, {0.5, 0.5}, {-0.5, 0.5}};
         Pair const st = map(kCorners[sector], kCorners[(sector + 1) % 4], {0.5, 0.5});
         return {st[0], st[1], {{1, 0}, {0, 1}}, {0, 0}};
     }
-    if (FarExt::HasHalves(size)) {
-        patch = FarExt::GetHalfOfEdge(sector);
+    bool const isHalf = shape == FaceShape(4, true);
+    if (FarExt::HasHalves(size) || isHalf) {
+        patch = isHalf ? 0 : FarExt::GetHalfOfEdge(sector);
         // Of a half, whose long edge is the diagonal, from the centre of that on, around from its end.
         constexpr Pair kCorners[4] = {{0.5, 0}, {0.25, 0.5}, {-0.25, 0.5}, {-0.5, 0}};
-        int const local = sector % FarExt::kDiagonalEnd;
+        int const local = isHalf ? sector - 1 : sector % FarExt::kDiagonalEnd;
         return findInTrapezoid(map(kCorners[local], kCorners[local + 1], {0.5, 0}));
     }
     double const cosine = std::cos(FarExt::internal::kPi / size);
@@ -297,7 +304,7 @@ struct ByUv {
 
 } // namespace
 
-PatchPlace FindPatchPlace(BfrPlace const &ofFace, int size, int level, int numDerivatives) {
+PatchPlace FindPatchPlace(BfrPlace const &ofFace, FaceShape shape, int level, int numDerivatives) {
     int const sector = ofFace.point.sector;
     Pair coords = ofFace.point.coords;
     int left = level;
@@ -311,11 +318,12 @@ PatchPlace FindPatchPlace(BfrPlace const &ofFace, int size, int level, int numDe
     // Each step halves cells, but that from the sector to the half cell, which is part of the map.
     int const numHalvings = left == 0 ? level : level - 1;
     if (left == 0) {
-        in = findInWhole(size, sector, coords, place.patch, linear);
+        in = findInWhole(shape, sector, coords, place.patch, linear);
     } else {
         --left;
         coords = HalfCell::kFromSector.Apply(coords);
-        place.patch = GetNumFacePatches(size, left) + sector * getNumHalfPatches(left);
+        place.patch = GetNumFacePatches(shape, left) +
+                      (sector - shape.GetFirstSector()) * getNumHalfPatches(left);
         int turn = 0;
         while (left > 0) {
             --left;
@@ -332,7 +340,7 @@ PatchPlace FindPatchPlace(BfrPlace const &ofFace, int size, int level, int numDe
     if (numDerivatives == 0) {
         return place;
     }
-    ByUv const cell(linear, double(1 << numHalvings), ofFace, size > 4);
+    ByUv const cell(linear, double(1 << numHalvings), ofFace, shape.size > 4);
     double const factor = 1 / (in.bySt[0][0] * in.bySt[1][1] - in.bySt[0][1] * in.bySt[1][0]);
     auto const solve = [&](double first, double second) {
         return Pair{(in.bySt[1][1] * first - in.bySt[0][1] * second) * factor,
@@ -361,7 +369,7 @@ namespace {
 
 // From the control points of a face that few are alike.
 template <typename TYPE, typename REAL>
-void makePoints(TYPE const &type, int faceSize, int level, REAL const *control, int size,
+void makePoints(TYPE const &type, FaceShape shape, int level, REAL const *control, int size,
                 std::ptrdiff_t stride, PatchSummer<REAL> &summer) {
     // Their memory is kept for the next face.
     static thread_local RefinedCells cells;
@@ -372,24 +380,24 @@ void makePoints(TYPE const &type, int faceSize, int level, REAL const *control, 
         packed.insert(packed.end(), point, point + size);
     }
     cells.SetBase(type, packed.data(), size);
-    PointMaker<REAL>(cells, faceSize, level, summer)
-        .Make(RefinedCells::kBase, CornerAges(std::size_t(faceSize), -1));
+    PointMaker<REAL>(cells, level, summer)
+        .Make(RefinedCells::kBase, CornerAges(std::size_t(shape.size), -1));
 }
 
 } // namespace
 
 template <typename REAL>
-void MakeFacePatchPoints(BaseType const &type, int faceSize, int level, REAL const *control,
+void MakeFacePatchPoints(BaseType const &type, FaceShape shape, int level, REAL const *control,
                          int size, std::ptrdiff_t stride, std::vector<int> const *wanted,
                          REAL *points) {
     PatchSummer<REAL> summer(wanted, size, stride, points);
     if (PlainFaceType const *const plain = type.GetPlain()) {
-        makePoints(*plain, faceSize, level, control, size, stride, summer);
+        makePoints(*plain, shape, level, control, size, stride, summer);
     } else if (type.IsInLattice()) {
-        summer.SumUp(getMatrix<REAL>(*type, 0, CornerAges(std::size_t(faceSize), -1), level),
+        summer.SumUp(getMatrix<REAL>(*type, 0, CornerAges(std::size_t(shape.size), -1), level),
                      control, stride);
     } else {
-        makePoints(*type, faceSize, level, control, size, stride, summer);
+        makePoints(*type, shape, level, control, size, stride, summer);
     }
 }
 
@@ -536,10 +544,10 @@ void EvaluatePatch(PatchPlace const &place, int numDerivatives, REAL const *poin
     }
 }
 
-template void MakeFacePatchPoints(BaseType const &, int, int, float const *, int, std::ptrdiff_t,
-                                  std::vector<int> const *, float *);
-template void MakeFacePatchPoints(BaseType const &, int, int, double const *, int, std::ptrdiff_t,
-                                  std::vector<int> const *, double *);
+template void MakeFacePatchPoints(BaseType const &, FaceShape, int, float const *, int,
+                                  std::ptrdiff_t, std::vector<int> const *, float *);
+template void MakeFacePatchPoints(BaseType const &, FaceShape, int, double const *, int,
+                                  std::ptrdiff_t, std::vector<int> const *, double *);
 template void EvaluatePatch(PatchPlace const &, int, float const *, int, std::ptrdiff_t,
                             float *const *);
 template void EvaluatePatch(PatchPlace const &, int, double const *, int, std::ptrdiff_t,

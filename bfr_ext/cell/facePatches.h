@@ -19,10 +19,10 @@ using FarExt::internal::kNumPatchPoints;
 inline constexpr int kFirstPatchLevel = 2;
 inline constexpr int kLastPatchLevel = 6;
 
-/// \brief How many Gregory patches the cells of a level are in a base face of \p size sides.
+/// \brief How many Gregory patches the cells of a level are in a base face.
 ///
 /// They are in the order of the cells: depth first, with children in the order of RefineCell().
-int GetNumFacePatches(int size, int level);
+int GetNumFacePatches(FaceShape shape, int level);
 
 /// A place in one of the patches of a face; its derivatives are there as far as they were asked for.
 struct PatchPlace {
@@ -33,9 +33,9 @@ struct PatchPlace {
     Pair second[3]; ///< of (s, t), by u twice, by u and v, by v twice
 };
 
-/// Finds the patch of a place of a base face of \p size sides, with derivatives as far as \p numDerivatives asks:
+/// Finds the patch of a place of a base face, with derivatives as far as \p numDerivatives asks:
 /// 0, 1 or 2.
-PatchPlace FindPatchPlace(BfrPlace const &ofFace, int size, int level, int numDerivatives);
+PatchPlace FindPatchPlace(BfrPlace const &ofFace, FaceShape shape, int level, int numDerivatives);
 
 /// \brief Makes the points of patches of a face from its control points.
 ///
@@ -43,7 +43,7 @@ PatchPlace FindPatchPlace(BfrPlace const &ofFace, int size, int level, int numDe
 /// \param wanted   the patches, ascending; null: all
 /// \param points   kNumPatchPoints for each patch of the face, likewise; those of other patches are left as they are
 template <typename REAL>
-void MakeFacePatchPoints(BaseType const &type, int faceSize, int level, REAL const *control,
+void MakeFacePatchPoints(BaseType const &type, FaceShape shape, int level, REAL const *control,
                          int size, std::ptrdiff_t stride, std::vector<int> const *wanted,
                          REAL *points);
 

@@ -101,7 +101,7 @@ private:
             return {i == 1 ? 2 * kThird : -kThird, i == 2 ? 2 * kThird : -kThird};
         }
         if (i <= 1) {
-            return {i - 0.5, -_center[1]};
+            return {i - 0.5, -_regularCenter[1]};
         }
         if (_size == 4) {
             return {i == 2 ? 0.5 : -0.5, 0.5};

@@ -122,31 +122,31 @@ TEST(Polyline, LevelsAndPlaces) {
             EXPECT_TRUE(polyline.Contains(Polyline(level - 1)));
         }
     }
-    EXPECT_EQ(Polyline(2).GetPlaces(), (std::vector<Polyline::Place>{1024, 3072}));
+    EXPECT_EQ(Polyline(2).GetPlaces(), (std::vector<Polyline::Place>{2048, 6144}));
     EXPECT_EQ(Polyline(2).GetParameter(1), 0.75);
 
     Polyline start;
     Polyline end;
-    ASSERT_TRUE(Polyline::FromPlaces({256, 768, 1024, 3072}, &start));
-    ASSERT_TRUE(Polyline::FromPlaces({1024, 1536, 2560, 3072}, &end));
+    ASSERT_TRUE(Polyline::FromPlaces({512, 1536, 2048, 6144}, &start));
+    ASSERT_TRUE(Polyline::FromPlaces({2048, 3072, 5120, 6144}, &end));
     EXPECT_EQ(start.GetReversed().GetPlaces(),
-              (std::vector<Polyline::Place>{1024, 3072, 3328, 3840}));
+              (std::vector<Polyline::Place>{2048, 6144, 6656, 7680}));
     Polyline both = start;
     both.Merge(end);
-    EXPECT_EQ(both.GetPlaces(), (std::vector<Polyline::Place>{256, 768, 1024, 1536, 2560, 3072}));
+    EXPECT_EQ(both.GetPlaces(), (std::vector<Polyline::Place>{512, 1536, 2048, 3072, 5120, 6144}));
     EXPECT_TRUE(both.Contains(start) && both.Contains(end));
     EXPECT_FALSE(start.Contains(both));
     for (std::vector<Polyline::Place> const &places :
-         std::vector<std::vector<Polyline::Place>>{{1024},
-                                                   {3072},
-                                                   {2048},
-                                                   {256, 768},
-                                                   {1024, 1024, 3072},
-                                                   {3072, 1024},
-                                                   {0, 1024, 3072},
-                                                   {1024, 3072, 4096},
-                                                   {1024, 1500, 2560, 3072},
-                                                   {1024, 2048, 3072}}) {
+         std::vector<std::vector<Polyline::Place>>{{2048},
+                                                   {6144},
+                                                   {4096},
+                                                   {512, 1536},
+                                                   {2048, 2048, 6144},
+                                                   {6144, 2048},
+                                                   {0, 2048, 6144},
+                                                   {2048, 6144, 8192},
+                                                   {2048, 3000, 5120, 6144},
+                                                   {2048, 4096, 6144}}) {
         EXPECT_FALSE(Polyline::FromPlaces(places, &both));
     }
     EXPECT_EQ(both.GetNumPoints(), 6);
@@ -174,7 +174,7 @@ TEST(CellTree, RefinesWhatItIsAskedTo) {
     EXPECT_EQ(tree.GetEdgePolyline(2), Polyline(2));
     tree.Refine(start + 1);
     EXPECT_EQ(tree.GetEdgePolyline(2).GetPlaces(),
-              (std::vector<Polyline::Place>{256, 768, 1024, 3072}));
+              (std::vector<Polyline::Place>{512, 1536, 2048, 6144}));
     EXPECT_EQ(tree.GetMaxLevel(), 4);
     for (int level = 0; level < 6; ++level) {
         EXPECT_EQ(CellTree(3, level).GetEdgePolyline(1), Polyline(level));

@@ -256,8 +256,8 @@ TEST(SurfacePlaces, InPatchesChangeAsTheirDerivativesSay) {
     for (int const size : {3, 4, 5, 6, 7, 12}) {
         for (int const level : {2, 3, 5}) {
             auto const find = [&](Uv const &uv) {
-                return FindPatchPlace(FindBfrPlace(BfrExt::Parameterization(size), uv, 0), size,
-                                      level, 2);
+                return FindPatchPlace(FindBfrPlace(BfrExt::Parameterization(size), size, uv, 0),
+                                      size, level, 2);
             };
             std::vector<bool> isMet(std::size_t(BfrExt::internal::GetNumFacePatches(size, level)));
             std::vector<Uv> places = findPlaces(size, 400);
