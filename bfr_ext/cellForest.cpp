@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cellForest.h"
 
-#include "far_ext/vtr/hierarchy.h"
+#include "far_ext/vtr/baseCoords.h"
 #include "far_ext/vtr/parallel.h"
 
 #include <algorithm>
@@ -18,7 +18,7 @@ CellForest::CellForest(FarExt::TopologyRefiner const &refiner)
     _trees.reserve(std::size_t(_level.GetNumFaces()));
     _isMatched.resize(std::size_t(_level.GetNumFaces()));
     for (Index face = 0; face < _level.GetNumFaces(); ++face) {
-        _trees.emplace_back(_level.GetFaceVertices(face).size());
+        _trees.emplace_back(FarExt::internal::GetFaceShape(_level.GetLevel(), face));
     }
     _edges.resize(std::size_t(_level.GetNumEdges()));
     _polylines = _edges;
@@ -35,7 +35,7 @@ bool CellForest::isReversed(Index face, int local) const {
 void CellForest::MatchEdges() {
     Level const &level = _level.GetLevel();
     auto const hasTree = [&](Index face) {
-        return GetTree(face).GetFaceSize() == level.GetFaceSize(face);
+        return GetTree(face).GetFaceShape() == FarExt::internal::GetFaceShape(level, face);
     };
     FarExt::internal::ParallelFor(
         GetNumFaces(), [&](Index face) { _isMatched[std::size_t(face)] = hasTree(face); });
@@ -82,7 +82,7 @@ bool CellForest::IsMatched(Index face) const {
     }
     Level const &level = _level.GetLevel();
     CellTree const &tree = GetTree(face);
-    if (tree.GetFaceSize() != level.GetFaceSize(face)) {
+    if (tree.GetFaceShape() != FarExt::internal::GetFaceShape(level, face)) {
         return false;
     }
     for (int local = 0; local < tree.GetFaceSize(); ++local) {
@@ -109,7 +109,7 @@ std::vector<Polyline> CellForest::GetFacePolylines(Index face) const {
 
 LevelTessellation CellForest::GetTessellation(Index face,
                                               LevelTessellation::Options options) const {
-    if (GetTree(face).GetFaceSize() != _level.GetLevel().GetFaceSize(face)) {
+    if (GetTree(face).GetFaceShape() != FarExt::internal::GetFaceShape(_level.GetLevel(), face)) {
         return LevelTessellation(Parameterization(), 0);
     }
     return LevelTessellation(GetTree(face), GetFacePolylines(face).data(), options);
@@ -119,7 +119,7 @@ LevelTessellation CellForest::GetTessellation(Index face,
 void CellForest::getKey(Index face, std::vector<int> &key) const {
     Level const &level = _level.GetLevel();
     CellTree const &tree = GetTree(face);
-    key.assign(1, tree.GetFaceSize());
+    key = {tree.GetFaceSize(), tree.GetFaceShape().isHalf ? 1 : 0};
     for (int cell = 0; cell < tree.GetNumCells(); ++cell) {
         key.push_back(tree.GetFirstChild(cell));
     }

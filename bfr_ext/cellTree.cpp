@@ -7,12 +7,15 @@
 
 namespace OpenSubdivHex::BfrExt {
 
-CellTree::CellTree(int faceSize) : _faceSize(faceSize), _cells{{0, -1, 0, -1}} {}
+using FarExt::FaceShape;
 
-CellTree::CellTree(int faceSize, int level)
-    : CellTree(faceSize, std::vector<int>(std::size_t(faceSize), level).data(), level) {}
+CellTree::CellTree(FaceShape shape)
+    : _shape(shape), _cells{{0, -1, 0, {-1, static_cast<signed char>(shape.isHalf ? 0 : -1)}}} {}
 
-CellTree::CellTree(int faceSize, int const edgeLevels[], int level) : CellTree(faceSize) {
+CellTree::CellTree(FaceShape shape, int level)
+    : CellTree(shape, std::vector<int>(std::size_t(shape.size), level).data(), level) {}
+
+CellTree::CellTree(FaceShape shape, int const edgeLevels[], int level) : CellTree(shape) {
     for (int cell = 0; cell < GetNumCells(); ++cell) {
         if (isToRefine(cell, edgeLevels, level)) {
             Refine(cell);
@@ -22,8 +25,13 @@ CellTree::CellTree(int faceSize, int const edgeLevels[], int level) : CellTree(f
 
 // A step divides the long edges of half cells, and no others.
 bool CellTree::isToRefine(int cell, int const edgeLevels[], int level) const {
-    bool const isOnEdge = GetBorderSide(cell) == 0;
-    return GetLevel(cell) < (isOnEdge ? std::min(level, edgeLevels[GetEdge(cell)]) : level);
+    if (GetBorderSide(cell) == 0) {
+        level = std::min(level, edgeLevels[GetEdge(cell)]);
+    }
+    if (GetLongEdgeSide(cell) == 0) {
+        level = std::min(level, edgeLevels[0]);
+    }
+    return GetLevel(cell) < level;
 }
 
 int CellTree::GetMaxLevel() const {
@@ -49,48 +57,61 @@ int CellTree::Refine(int cell) {
     _cells.resize(_cells.size() + std::size_t(GetNumChildren(cell)));
     Cell *const children = &_cells[std::size_t(first)];
     if (parent.sector < 0) {
-        children[0] = {0, -1, level, -1};
-        for (int edge = 0; edge < _faceSize; ++edge) {
-            children[1 + edge] = {0, edge, level, short(parent.level == 0 ? 0 : -1)};
+        children[0] = {0, -1, level, {-1, parent.borderSides[1]}};
+        int const firstSector = _shape.GetFirstSector();
+        signed char const side = parent.level == 0 ? 0 : -1;
+        for (int sector = firstSector; sector < _shape.size; ++sector) {
+            signed char sideOnLongEdge = -1;
+            if (_shape.isHalf && (sector == firstSector || sector + 1 == _shape.size)) {
+                sideOnLongEdge = sector == firstSector ? 3 : 1;
+            }
+            children[1 + sector - firstSector] = {0, sector, level, {side, sideOnLongEdge}};
         }
         return first;
     }
     // The long edge comes apart in the side before the end of child 3, the long edge of child 0 and
     // the side before the start of child 1; another side becomes the long edge of the child there.
     for (int child = 0; child < 4; ++child) {
-        static constexpr short kSidesOnLongEdge[4] = {0, 3, -1, 1};
-        bool const isSide = child > 0 && parent.borderSide == child;
-        short const side =
-            parent.borderSide == 0 ? kSidesOnLongEdge[child] : short(isSide ? 0 : -1);
-        children[child] = {0, parent.sector, level, side};
+        static constexpr signed char kSidesOnLongEdge[4] = {0, 3, -1, 1};
+        children[child] = {0, parent.sector, level, {}};
+        for (std::size_t edge = 0; edge < 2; ++edge) {
+            int const side = parent.borderSides[edge];
+            bool const isSide = child > 0 && side == child;
+            children[child].borderSides[edge] =
+                side == 0 ? kSidesOnLongEdge[child] : static_cast<signed char>(isSide ? 0 : -1);
+        }
     }
     return first;
 }
 
-// Adds what lies inside of the side of a cell that lies on the edge, from start to end.
-void CellTree::addPoints(int cell, int start, int end, std::vector<Polyline::Place> &places) const {
+// Adds what lies inside of the side of a cell that lies on the edge of its sector, 0, or the long one, 1, from start to end.
+void CellTree::addPoints(int cell, std::size_t edge, int start, int end,
+                         std::vector<Polyline::Place> &places) const {
     int const child = GetFirstChild(cell);
     if (child == 0) {
         return;
     }
-    int const side = GetBorderSide(cell);
+    int const side = getCell(cell).borderSides[edge];
     if (side > 0) {
-        addPoints(child + side, start, end, places);
+        addPoints(child + side, edge, start, end, places);
         return;
     }
     int const first = start + (end - start) / 4;
     int const second = end - (end - start) / 4;
-    addPoints(child + 3, start, first, places);
+    addPoints(child + GetNumChildren(cell) - 1, edge, start, first, places);
     places.push_back(Polyline::Place(first));
-    addPoints(child, first, second, places);
+    addPoints(child, edge, first, second, places);
     places.push_back(Polyline::Place(second));
-    addPoints(child + 1, second, end, places);
+    addPoints(child + 1, edge, second, end, places);
 }
 
 Polyline CellTree::GetEdgePolyline(int edge) const {
     Polyline result;
-    if (IsRefined(0)) {
-        addPoints(GetFirstChild(0) + 1 + edge, 0, Polyline::kLength, result._places);
+    int const child = edge - _shape.GetFirstSector();
+    if (child < 0) {
+        addPoints(0, 1, 0, Polyline::kLength, result._places);
+    } else if (IsRefined(0)) {
+        addPoints(GetFirstChild(0) + 1 + child, 0, 0, Polyline::kLength, result._places);
     }
     return result;
 }

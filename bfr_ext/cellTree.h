@@ -2,6 +2,8 @@
 #ifndef OPENSUBDIVHEX_BFR_EXT_CELL_TREE_H
 #define OPENSUBDIVHEX_BFR_EXT_CELL_TREE_H
 
+#include "far_ext/faceShape.h"
+
 #include "far_ext/export.h"
 
 #include <cstddef>
@@ -9,6 +11,10 @@
 #include <vector>
 
 namespace OpenSubdivHex::BfrExt {
+
+namespace internal {
+class FaceSections;
+}
 
 /// \brief The segments of an edge of a base face between refined cells: the positions of its inner points.
 ///
@@ -29,8 +35,8 @@ public:
     static constexpr int kLastLevel = 12;
     /// A place: how far a point is from the start of the edge, which is 0, with its end at kLength.
     using Place = std::uint16_t;
-    /// The place of the end.
-    static constexpr int kLength = 1 << kLastLevel;
+    /// The place of the end.  The long edge of half a polygon is divided once more than others.
+    static constexpr int kLength = 2 << kLastLevel;
 
     /// One segment.
     Polyline() = default;
@@ -88,6 +94,9 @@ private:
 ///
 /// Corners of half cells are counter-clockwise from the start of the long edge, which is side 0.
 ///
+/// A face that is half a polygon (FaceShape) has no half cell at its long edge, edge 0.  Cells of level 1 divide that edge, as
+/// those of level 2 divide others.
+///
 /// Cells have numbers: 0 is the face, and others are numbered as they are made, children of one cell
 /// one behind the other.
 ///
@@ -97,20 +106,22 @@ public:
     /// The last level that cells can have.
     static constexpr int kLastLevel = Polyline::kLastLevel;
 
-    /// A face of \p faceSize vertices, 3 at least, that is not refined.
-    explicit CellTree(int faceSize);
+    /// A face of 3 vertices at least that is not refined.
+    explicit CellTree(FarExt::FaceShape shape);
     /// Cells of one level, 0 ... kLastLevel, everywhere, as far as there are numbers: to 2^31 - 1.
-    CellTree(int faceSize, int level);
+    CellTree(FarExt::FaceShape shape, int level);
     /// \brief Cells of one level, but for those whose refinement would give an edge of the face more
     /// points than it has with cells of another level.
     ///
-    /// \param faceSize    vertices of the face
+    /// \param shape       that of the face
     /// \param edgeLevels  by edge, edge i being from vertex i to the next
     /// \param level       of the inside
-    CellTree(int faceSize, int const edgeLevels[], int level);
+    CellTree(FarExt::FaceShape shape, int const edgeLevels[], int level);
 
+    /// What the face looks like.
+    FarExt::FaceShape GetFaceShape() const { return _shape; }
     /// Vertices of the face.
-    int GetFaceSize() const { return _faceSize; }
+    int GetFaceSize() const { return _shape.size; }
     /// All cells, with those that are refined.
     int GetNumCells() const { return int(_cells.size()); }
     /// Cells that are not refined.
@@ -126,12 +137,16 @@ public:
     /// cell.
     int GetEdge(int cell) const { return getCell(cell).sector; }
     /// The side of a half cell that lies on that edge: 0, 1 or 3, or -1 if none does.
-    int GetBorderSide(int cell) const { return getCell(cell).borderSide; }
+    int GetBorderSide(int cell) const { return getCell(cell).borderSides[0]; }
+    /// \brief The side of a cell that lies on the long edge of half a polygon: 0, 1 or 3, or -1 if none does.
+    ///
+    /// That of the face and its F-faces is 0.
+    int GetLongEdgeSide(int cell) const { return getCell(cell).borderSides[1]; }
 
     /// Whether a cell has children.
     bool IsRefined(int cell) const { return getCell(cell).firstChild > 0; }
-    /// How many children a cell has, or would have: 4 of half cells, GetFaceSize() + 1 of whole ones.
-    int GetNumChildren(int cell) const { return IsWhole(cell) ? _faceSize + 1 : 4; }
+    /// How many children a cell has, or would have: 4 of half cells, 1 more than the face has sectors of whole ones.
+    int GetNumChildren(int cell) const { return IsWhole(cell) ? _shape.GetNumSectors() + 1 : 4; }
     /// The first of them, 0 if it has none.  It is the F-face, or half of it; then come those at the
     /// edges, from edge 0 of whole cells and side 1 of half cells on.
     int GetFirstChild(int cell) const { return getCell(cell).firstChild; }
@@ -150,14 +165,17 @@ private:
         int firstChild;
         int sector;
         short level;
-        short borderSide;
+        signed char
+            borderSides[2]; // on the edge of the sector, and on the long edge of half a polygon
     };
+    friend class internal::FaceSections;
 
     Cell const &getCell(int cell) const { return _cells[std::size_t(cell)]; }
     bool isToRefine(int cell, int const edgeLevels[], int level) const;
-    void addPoints(int cell, int start, int end, std::vector<Polyline::Place> &places) const;
+    void addPoints(int cell, std::size_t edge, int start, int end,
+                   std::vector<Polyline::Place> &places) const;
 
-    int _faceSize;
+    FarExt::FaceShape _shape;
     int _numLeaves = 1;
     std::vector<Cell> _cells;
 };

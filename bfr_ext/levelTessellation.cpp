@@ -46,6 +46,7 @@ bool LevelTessellation::IsValid() const { return !_data->places.empty(); }
 Parameterization LevelTessellation::GetParameterization() const { return _data->parameterization; }
 
 int LevelTessellation::GetFaceSize() const { return _data->GetFaceSize(); }
+FarExt::FaceShape LevelTessellation::GetFaceShape() const { return _data->GetFaceShape(); }
 
 int LevelTessellation::GetNumSections() const { return _data->section ? _data->section->count : 1; }
 
@@ -91,7 +92,7 @@ template int LevelTessellation::writeCoords(int, int, double[]) const;
 
 template <typename REAL>
 int LevelTessellation::GetPlaneCoords(REAL coordTuples[]) const {
-    FarExt::internal::BasePolygon const polygon(GetFaceSize());
+    FarExt::internal::BasePolygon const polygon(_data->GetFaceShape());
     for (TessellationData::SectorCoords const &place : _data->places) {
         polygon.Write(place.sector, {place.start, place.end}, coordTuples);
         coordTuples += _data->coordStride;

@@ -6,8 +6,9 @@
 
 namespace OpenSubdivHex::BfrExt {
 
-Parameterization::Parameterization(int faceSize)
-    : OpenSubdiv::Bfr::Parameterization(FarExt::internal::MakeFaceParameterization(faceSize)) {}
+Parameterization::Parameterization(FarExt::FaceShape shape)
+    : OpenSubdiv::Bfr::Parameterization(FarExt::internal::MakeFaceParameterization(shape.size)),
+      _isHalf(shape.isHalf) {}
 
 template <typename REAL>
 void Parameterization::ConvertToPlane(REAL const uv[2], REAL xy[2]) const {

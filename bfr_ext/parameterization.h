@@ -3,6 +3,7 @@
 #define OPENSUBDIVHEX_BFR_EXT_PARAMETERIZATION_H
 
 #include "far_ext/export.h"
+#include "far_ext/faceShape.h"
 
 #include <opensubdiv/bfr/parameterization.h>
 
@@ -23,11 +24,14 @@ class OPENSUBDIVHEX_API Parameterization : public OpenSubdiv::Bfr::Parameterizat
 public:
     /// An invalid one.
     Parameterization() = default;
-    /// The parameterization of a face of \p faceSize vertices; invalid for fewer than 3, and for more than Bfr allows.
-    explicit Parameterization(int faceSize);
+    /// The parameterization of a face; invalid for fewer than 3 vertices, and for more than Bfr allows.
+    explicit Parameterization(FarExt::FaceShape shape);
     /// One of OpenSubdiv's own, of any scheme.
     explicit Parameterization(OpenSubdiv::Bfr::Parameterization const &other)
         : OpenSubdiv::Bfr::Parameterization(other) {}
+
+    /// What the face looks like.  Half a polygon has the (u, v) of a polygon of so many vertices.
+    FarExt::FaceShape GetFaceShape() const { return {GetFaceSize(), _isHalf}; }
 
     /// @name The plane of the face
     /// Coordinates in one piece, as LevelTessellation::GetPlaneCoords() has them: quads and triangles have their (u, v),
@@ -44,6 +48,9 @@ public:
     template <typename REAL>
     void ConvertFromPlane(REAL const xy[2], REAL uv[2]) const;
     /// @}
+
+private:
+    bool _isHalf = false;
 };
 
 } // namespace OpenSubdivHex::BfrExt

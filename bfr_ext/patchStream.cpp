@@ -5,6 +5,7 @@
 
 #include "far_ext/executor.h"
 #include "far_ext/stencil/interpolationMode.h"
+#include "far_ext/vtr/baseCoords.h"
 #include "far_ext/vtr/parallel.h"
 #include "far_ext/vtr/report.h"
 
@@ -60,11 +61,11 @@ private:
             _tessellation.reset();
             return _tessellation.emplace(make());
         }
-        _stream._forest->getKey(face, _levels);
-        if (!_plan || _levels != _planLevels) {
+        _stream._forest->getKey(face, _treeKey);
+        if (!_plan || _treeKey != _planKey) {
             _plan.reset();
-            _plan = _stream._plans->Find(_levels, make);
-            _planLevels = _levels;
+            _plan = _stream._plans->Find(_treeKey, make);
+            _planKey = _treeKey;
         }
         return _plan->tessellation;
     }
@@ -74,7 +75,8 @@ private:
         _plan.reset();
         _stream.getLevels(face, _levels);
         if (_stream._forest ? _sectionsFace != face
-                            : !_sections || _sections->GetLevels() != _levels) {
+                            : !_sections || _sections->GetLevels() != _levels.levels ||
+                                  _sections->GetFaceShape() != _levels.shape) {
             _sections.reset();
             _sections = _stream.makeSections(face);
             _sectionsFace = face;
@@ -84,14 +86,16 @@ private:
                 LevelTessellation(*_sections, section, _stream._options.GetTessellationOptions()));
         }
         _plan = _stream._plans->Find(*_sections, section);
-        _planLevels.clear();
+        _planLevels = {};
         return _plan->tessellation;
     }
 
     PatchStream const &_stream;
     std::optional<LevelTessellation> _tessellation; // of a tree
-    std::vector<int> _levels;                       // or what tells a tree
-    std::vector<int> _planLevels;
+    internal::FaceLevels _levels;
+    internal::FaceLevels _planLevels;
+    std::vector<int> _treeKey; // what tells a tree
+    std::vector<int> _planKey;
     std::shared_ptr<internal::PatchPlan const> _plan;
     std::unique_ptr<internal::FaceSections const> _sections; // of the last face that came in some
     Index _sectionsFace = Far::INDEX_INVALID;
@@ -209,20 +213,21 @@ std::shared_ptr<internal::PatchPlans> PatchStream<REAL>::makePlans() const {
 
 // The levels of the edges, then that of the inside; none of a forest.
 template <typename REAL>
-void PatchStream<REAL>::getLevels(Index face, std::vector<int> &levels) const {
-    levels.clear();
+void PatchStream<REAL>::getLevels(Index face, internal::FaceLevels &levels) const {
+    levels.levels.clear();
     if (_forest) {
         return;
     }
+    levels.shape = FarExt::internal::GetFaceShape(_factory.GetLevel().GetLevel(), face);
     for (Index const edge : _factory.GetLevel().GetFaceEdges(face)) {
-        levels.push_back(_levels.GetEdgeLevel(edge));
+        levels.levels.push_back(_levels.GetEdgeLevel(edge));
     }
-    levels.push_back(_levels.GetFaceLevel(face));
+    levels.levels.push_back(_levels.GetFaceLevel(face));
 }
 
 // Whether a face comes in sections.
 template <typename REAL>
-bool PatchStream<REAL>::isCut(Index face, std::vector<int> const &levels) const {
+bool PatchStream<REAL>::isCut(Index face, internal::FaceLevels const &levels) const {
     return _forest ? _plans->IsCut(_forest->GetTree(face)) : _plans->IsCut(levels);
 }
 
@@ -235,7 +240,7 @@ std::unique_ptr<internal::FaceSections const> PatchStream<REAL>::makeSections(In
         return std::make_unique<FaceSections const>(_forest->GetTree(face),
                                                     _forest->GetFacePolylines(face), maxLeaves);
     }
-    std::vector<int> levels;
+    internal::FaceLevels levels;
     getLevels(face, levels);
     return std::make_unique<FaceSections const>(levels, maxLeaves);
 }
@@ -295,7 +300,7 @@ Far::Index PatchStream<REAL>::takeFaces(Index beginFace, Index endFace, Batch &b
     std::size_t const numFaces =
         std::max(kMinNumFaces, _options.GetMaxMemory() / kShareOfMemory / sizeof(LevelsOfFace));
     std::vector<LevelsOfFace> order;
-    std::vector<int> levels;
+    internal::FaceLevels levels;
     std::unordered_set<std::size_t> hashes;
     std::size_t memory = 0;
     double numLeaves = 0; // at least as many as patches
@@ -310,8 +315,8 @@ Far::Index PatchStream<REAL>::takeFaces(Index beginFace, Index endFace, Batch &b
         }
         getLevels(beginFace, levels);
         numLeaves += internal::FaceSections::CountLeaves(levels);
-        std::size_t hash = 0;
-        for (int const level : levels) {
+        std::size_t hash = levels.shape.isHalf ? 1 : 0;
+        for (int const level : levels.levels) {
             hash = (hash ^ std::size_t(level + 1)) * 0x9e3779b97f4a7c15;
             hash ^= hash >> 29;
         }
@@ -326,7 +331,7 @@ Far::Index PatchStream<REAL>::takeFaces(Index beginFace, Index endFace, Batch &b
         });
     }
     batch = {};
-    std::vector<int> lastLevels;
+    internal::FaceLevels lastLevels;
     bool isLastCut = false;
     int numSections = 0;
     for (LevelsOfFace const &levelsOfFace : order) {
@@ -346,14 +351,14 @@ Far::Index PatchStream<REAL>::takeFaces(Index beginFace, Index endFace, Batch &b
 
 template <typename REAL>
 int PatchStream<REAL>::GetNumSections(Index face) const {
-    std::vector<int> levels;
+    internal::FaceLevels levels;
     getLevels(face, levels);
     return isCut(face, levels) ? makeSections(face)->GetNumSections() : 1;
 }
 
 template <typename REAL>
 LevelTessellation PatchStream<REAL>::MakeTessellation(Index face, int section) const {
-    std::vector<int> levels;
+    internal::FaceLevels levels;
     getLevels(face, levels);
     return isCut(face, levels)
                ? LevelTessellation(*makeSections(face), section, _options.GetTessellationOptions())
@@ -365,10 +370,10 @@ LevelTessellation PatchStream<REAL>::MakeTessellation(Index face) const {
     if (_forest) {
         return _forest->GetTessellation(face, _options.GetTessellationOptions());
     }
-    std::vector<int> levels;
+    internal::FaceLevels levels;
     getLevels(face, levels);
-    return LevelTessellation(_factory.GetFaceParameterization(face), int(levels.size()),
-                             levels.data(), _options.GetTessellationOptions());
+    return LevelTessellation(_factory.GetFaceParameterization(face), int(levels.levels.size()),
+                             levels.levels.data(), _options.GetTessellationOptions());
 }
 
 // The status names the first wrong face, whichever thread finds it.
@@ -401,7 +406,7 @@ CallStatus PatchStream<REAL>::checkRange(Index beginFace, Index endFace, bool *a
     }
     struct Checker {
         internal::PlanMemory::Counter counter;
-        std::vector<int> levels;
+        internal::FaceLevels levels;
     };
     internal::PlanMemory memory(*_plans);
     std::atomic<Index> firstBad(endFace);
@@ -442,7 +447,7 @@ CallStatus PatchStream<REAL>::checkRange(Index beginFace, Index endFace, bool *a
 
 // Of a stream of levels, these are written.
 template <typename REAL>
-CallStatus PatchStream<REAL>::checkFace(Index face, std::vector<int> &levels) const {
+CallStatus PatchStream<REAL>::checkFace(Index face, internal::FaceLevels &levels) const {
     CallStatus status = _factory.CheckFace(face);
     if (!status.IsOk()) {
         return status;
@@ -465,7 +470,9 @@ CallStatus PatchStream<REAL>::checkTree(Index face) const {
 
 // Whether those of a face and its edges are some that a tessellation has.
 template <typename REAL>
-CallStatus PatchStream<REAL>::checkLevels(Index face, std::vector<int> const &levels) const {
+CallStatus PatchStream<REAL>::checkLevels(Index face,
+                                          internal::FaceLevels const &faceLevels) const {
+    std::vector<int> const &levels = faceLevels.levels;
     auto const isLevel = [](int level) {
         return 0 <= level && level <= LevelTessellation::kLastLevel;
     };
@@ -580,7 +587,7 @@ bool PatchStream<REAL>::RunTessellations(TessellationSink const &sink, CallStatu
 template <typename REAL>
 auto PatchStream<REAL>::GetSectionPolygons(Index face) const -> SectionPolygons {
     SectionPolygons result;
-    std::vector<int> levels;
+    internal::FaceLevels levels;
     getLevels(face, levels);
     if (!isCut(face, levels)) {
         return result;
@@ -593,12 +600,10 @@ auto PatchStream<REAL>::GetSectionPolygons(Index face) const -> SectionPolygons 
     }
     result.firstCorners.push_back(int(result.vertices.size()));
     for (internal::CellMesh::Vertex const &vert : sections->GetVertices()) {
-        bool const isOnEdge = sections->IsOnEdge(vert);
-        result.edges.push_back(isOnEdge ? vert.sector : -1);
+        internal::EdgePlace<int> const place = sections->FindEdge(vert);
+        result.edges.push_back(place.edge);
         result.edgePoints.push_back(
-            !isOnEdge || vert.b == 0
-                ? -1
-                : sections->CountPointsBefore(vert.sector, sections->GetPlaceOnEdge(vert)));
+            place.edge < 0 || place.end == 0 ? -1 : sections->CountPointsBefore(place));
     }
     return result;
 }

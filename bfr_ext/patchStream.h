@@ -13,6 +13,7 @@
 namespace OpenSubdivHex::BfrExt {
 
 namespace internal {
+struct FaceLevels;
 class FaceSections;
 class PatchPlans;
 } // namespace internal
@@ -261,11 +262,11 @@ private:
     std::shared_ptr<internal::PatchPlans> makePlans() const;
     FarExt::CallStatus checkRange(Index beginFace, Index endFace,
                                   bool *arePlansKept = nullptr) const;
-    FarExt::CallStatus checkFace(Index face, std::vector<int> &levels) const;
-    FarExt::CallStatus checkLevels(Index face, std::vector<int> const &levels) const;
+    FarExt::CallStatus checkFace(Index face, internal::FaceLevels &levels) const;
+    FarExt::CallStatus checkLevels(Index face, internal::FaceLevels const &levels) const;
     FarExt::CallStatus checkTree(Index face) const;
-    void getLevels(Index face, std::vector<int> &levels) const;
-    bool isCut(Index face, std::vector<int> const &levels) const;
+    void getLevels(Index face, internal::FaceLevels &levels) const;
+    bool isCut(Index face, internal::FaceLevels const &levels) const;
     std::unique_ptr<internal::FaceSections const> makeSections(Index face) const;
     Index takeFaces(Index beginFace, Index endFace, Batch &batch) const;
     template <typename MAKE>

@@ -150,9 +150,9 @@ void Surface<REAL>::computePatchPoints(REAL patchPoints[], PointDescriptor const
 // The patch of a place, with derivatives.
 template <typename REAL>
 internal::PatchPlace Surface<REAL>::findPatchPlace(REAL const uv[2], int numDerivatives) const {
-    return internal::FindPatchPlace(
-        internal::FindBfrPlace(_parameterization, {double(uv[0]), double(uv[1])}, 0),
-        getFaceCells(GetFace()), _patchLevel, numDerivatives);
+    return internal::FindPatchPlace(internal::FindBfrPlace(_parameterization, GetFaceShape(),
+                                                           {double(uv[0]), double(uv[1])}, 0),
+                                    getFaceCells(GetFace()), _patchLevel, numDerivatives);
 }
 
 template <typename REAL>
@@ -193,7 +193,7 @@ template <typename REAL>
 void Surface<REAL>::evaluate(LevelTessellation const &tessellation, REAL const controlPoints[],
                              PointDescriptor const &pointDesc, REAL *const results[6],
                              PointDescriptor const &resultDesc) const {
-    if (IsValid() && tessellation.IsValid() && tessellation.GetFaceSize() == GetFaceSize()) {
+    if (IsValid() && tessellation.IsValid() && tessellation.GetFaceShape() == GetFaceShape()) {
         internal::FaceEvaluator<REAL>(GetFace(), controlPoints, pointDesc)
             .Evaluate(tessellation.GetData(), results, resultDesc);
     }
@@ -251,8 +251,8 @@ int Surface<REAL>::evaluateStencil(REAL const uv[2], int numDerivatives,
     }
     // Rounding of u and v matters more in larger polygons.
     double const tolerance = 2 * GetFaceSize() * double(std::numeric_limits<REAL>::epsilon());
-    internal::BfrPlace const place =
-        internal::FindBfrPlace(_parameterization, {double(uv[0]), double(uv[1])}, tolerance);
+    internal::BfrPlace const place = internal::FindBfrPlace(
+        _parameterization, GetFaceShape(), {double(uv[0]), double(uv[1])}, tolerance);
     CellStencil stencil(*GetFace().type);
     stencil.Find(place.point, numDerivatives > 0);
     copyWeights(stencil.GetWeights(), weights[0]);

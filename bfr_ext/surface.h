@@ -115,6 +115,8 @@ public:
     Parameterization GetParameterization() const { return _parameterization; }
     /// Vertices of the face.
     int GetFaceSize() const { return _parameterization.GetFaceSize(); }
+    /// What the face looks like.
+    FarExt::FaceShape GetFaceShape() const { return _parameterization.GetFaceShape(); }
 
     /// @name Control points
     /// @{

@@ -7,6 +7,7 @@
 
 #include "far_ext/limit/limitRows.h"
 #include "far_ext/stencil/interpolationMode.h"
+#include "far_ext/vtr/baseCoords.h"
 #include "far_ext/vtr/report.h"
 
 #include <algorithm>
@@ -213,7 +214,7 @@ bool SurfaceFactory::FaceHasLimitSurface(Index face, CallStatus *status) const {
 }
 
 Parameterization SurfaceFactory::GetFaceParameterization(Index face) const {
-    return Parameterization(_level.GetLevel().GetFaceSize(face));
+    return Parameterization(FarExt::internal::GetFaceShape(_level.GetLevel(), face));
 }
 
 // The type of a face that is not plain, from all of its patch; null, and a status, where it has no limit.
@@ -338,8 +339,9 @@ void SurfaceFactory::set(internal::BaseFace const &face, bool isKept,
     }
     surface._keptFace = isKept ? &face : nullptr;
     surface._patchLevel = getPatchLevel(face.type);
-    if (surface._parameterization.GetFaceSize() != face.size) { // mostly that of the face before
-        surface._parameterization = Parameterization(face.size);
+    FarExt::FaceShape const shape = face.type.GetShape(face.size);
+    if (surface._parameterization.GetFaceShape() != shape) { // mostly that of the face before
+        surface._parameterization = Parameterization(shape);
     }
 }
 

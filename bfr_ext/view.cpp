@@ -223,7 +223,7 @@ private:
     }
 
     int getNumChildren(Node const &node) const {
-        return node.isWhole ? _tree.GetFaceSize() + 1 : 4;
+        return node.isWhole ? _tree.GetFaceShape().GetNumSectors() + 1 : 4;
     }
 
     CellMeasures &getMeasures(Node const &node) { return _measures.cells[node.measures]; }
@@ -285,7 +285,7 @@ private:
             return;
         }
         _sampled = node.measures;
-        _grid = &CellGrid::Get(node.isWhole ? _tree.GetFaceSize() : 0);
+        _grid = &CellGrid::Get(node.isWhole ? _tree.GetFaceShape() : FaceShape());
         if (node.parent) {
             std::size_t const cell = makeCell(node);
             _isSharp = _cells[cell].GetType().IsSharp();
@@ -480,7 +480,7 @@ CellTree View::MakeTree(Surface<REAL> const &surface, REAL const controlPoints[]
     internal::FaceToMeasure base;
     base.Set(surface.GetFace().type, controlPoints, pointDesc.stride,
              std::size_t(surface.GetNumControlPoints()));
-    CellTree tree(surface.GetFaceSize());
+    CellTree tree(surface.GetFaceShape());
     refine(
         tree, [&]() -> internal::FaceToMeasure const & { return base; }, measures, previous,
         visibility);
@@ -495,7 +495,7 @@ void View::refine(CellTree &tree, std::function<internal::FaceToMeasure const &(
         visibility->clear();
     }
     if (IsValid()) {
-        bool const hasPrevious = previous && previous->GetFaceSize() == tree.GetFaceSize();
+        bool const hasPrevious = previous && previous->GetFaceShape() == tree.GetFaceShape();
         internal::TreeMaker(*_geometry, _options, getBase, measures,
                             hasPrevious ? previous : nullptr, tree, visibility)
             .Make();
@@ -537,9 +537,14 @@ int View::FindLevels(Surface<REAL> const &surface, REAL const controlPoints[],
     int const size = surface.GetFaceSize();
     std::fill(levels, levels + size, 0);
     for (int cell = 1; cell < tree.GetNumCells(); ++cell) {
+        auto const addLevel = [&](int edge) {
+            levels[edge] = std::max(levels[edge], tree.GetLevel(cell));
+        };
         if (tree.GetBorderSide(cell) >= 0) {
-            int &level = levels[tree.GetEdge(cell)];
-            level = std::max(level, tree.GetLevel(cell));
+            addLevel(tree.GetEdge(cell));
+        }
+        if (tree.GetLongEdgeSide(cell) >= 0) {
+            addLevel(0);
         }
     }
     levels[size] = tree.GetMaxLevel();

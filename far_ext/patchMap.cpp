@@ -64,11 +64,11 @@ struct Polygon {
     }
 };
 
-Polygon makeFace(int size, bool isHalf) {
-    internal::BasePolygon const base(size);
+Polygon makeFace(FaceShape shape) {
+    internal::BasePolygon const base(shape);
     std::array<double, 2> const center = base.GetCenter();
-    Polygon polygon = {{}, isHalf};
-    for (int i = 0; i < size; ++i) {
+    Polygon polygon = {{}, shape.isHalf};
+    for (int i = 0; i < shape.size; ++i) {
         std::array<double, 2> const corner = base.GetCorner(i);
         polygon.corners.push_back({center[0] + corner[0], center[1] + corner[1]});
     }
@@ -209,7 +209,7 @@ private:
         bool const isWhole =
             cells.IsCut() && level.GetFaceSurfaceFace(cell.face, 1 - cell.half) == patch.face;
         int const numCorners = cells.GetNumCorners(cell.half);
-        Polygon polygon = {{}, internal::IsHalfCell(level.GetLevel(), cell)};
+        Polygon polygon = {{}, cells.AreHalves()};
         for (int corner = 0; corner < numCorners; ++corner) {
             auto const i = std::size_t(isWhole ? cells.GetLocal(cell.half, corner) : corner);
             polygon.corners.push_back({uv[2 * i], uv[2 * i + 1]});
@@ -292,7 +292,7 @@ PatchMap::PatchMap(TopologyRefiner const &refiner, PatchTableFactory::Options op
     Level const &surface =
         refiner.GetLevel(refiner.GetHexSchemeOptions().GetSurfaceLevel()).GetLevel();
     for (Index face = 0; face < surface.numFaces; ++face) {
-        _faces.push_back({surface.GetFaceSize(face), surface.IsHalfFace(face),
+        _faces.push_back({internal::GetFaceShape(surface, face),
                           internal::FindFaceCells(surface, face).diagonalEnd});
     }
     TreeBuilder(*this, refiner, *cells);
@@ -303,11 +303,11 @@ auto PatchMap::FindPlace(Index face, double u, double v) const -> Place {
     if (face < 0 || face >= GetNumFaces() || !std::isfinite(u) || !std::isfinite(v)) {
         return place;
     }
-    auto const [faceSize, isHalf, diagonalEnd] = _faces[std::size_t(face)];
+    auto const [shape, diagonalEnd] = _faces[std::size_t(face)];
     auto const coords =
-        internal::FindInPlane(internal::MakeFaceParameterization(faceSize), {u, v}).coords;
+        internal::FindInPlane(internal::MakeFaceParameterization(shape.size), {u, v}).coords;
     Point const wanted = {coords[0], coords[1]};
-    Polygon cell = makeFace(faceSize, isHalf);
+    Polygon cell = makeFace(shape);
     Node node = _roots[std::size_t(face)];
     while (node.firstChild != Far::INDEX_INVALID) {
         Polygon child;
@@ -319,7 +319,7 @@ auto PatchMap::FindPlace(Index face, double u, double v) const -> Place {
     }
     // Half cells are not cut, but the faces of surfaces, and others as large as these.
     auto const size = int(cell.corners.size());
-    internal::FaceCells cells = {size, 0};
+    internal::FaceCells cells = {size, 0, cell.isHalf};
     if (!cell.isHalf) {
         cells.diagonalEnd = diagonalEnd;
     }
@@ -337,15 +337,13 @@ auto PatchMap::FindPlace(Index face, double u, double v) const -> Place {
 
 void PatchMap::GetFacePlace(Place const &place, double *u, double *v) const {
     Point const point = evaluate(GetCoords(place.patch), place.s, place.t);
-    int const size = _faces[std::size_t(GetFace(place.patch))].size;
+    FaceShape const shape = _faces[std::size_t(GetFace(place.patch))].shape;
     std::array<double, 2> uv = {point.u, point.v};
-    auto const parameterization = internal::MakeFaceParameterization(size);
+    auto const parameterization = internal::MakeFaceParameterization(shape.size);
     if (parameterization.HasSubFaces()) {
         int sector = 0;
-        internal::BasePolygon const polygon(size);
-        auto const [centerU, centerV] = polygon.GetCenter();
-        internal::SectorPoint const inSector =
-            polygon.FindSectorPoint({point.u - centerU, point.v - centerV}, sector);
+        internal::BasePolygon const polygon(shape);
+        internal::SectorPoint const inSector = polygon.FindSector(uv, sector);
         uv = internal::FindFaceCoords(parameterization, polygon, sector, inSector);
     }
     *u = uv[0];

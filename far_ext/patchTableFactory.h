@@ -2,6 +2,7 @@
 #ifndef OPENSUBDIVHEX_FAR_EXT_PATCH_TABLE_FACTORY_H
 #define OPENSUBDIVHEX_FAR_EXT_PATCH_TABLE_FACTORY_H
 
+#include "faceShape.h"
 #include "topologyRefiner.h"
 
 #include <opensubdiv/far/patchTable.h>
@@ -235,8 +236,7 @@ private:
         Index firstPatches[2]; // by half, if the face is cut
     };
     struct Face {
-        int size;
-        bool isHalf;
+        FaceShape shape;
         int diagonalEnd; // of internal::FaceCells
     };
     class TreeBuilder;

@@ -15,39 +15,39 @@ BfrPlace makePlace(BasePoint const &point, PlanePlace const &place) {
 
 } // namespace
 
-BfrPlace FindBfrPlace(Bfr::Parameterization const &parameterization, Pair const &uv,
-                      double tolerance) {
+BfrPlace FindBfrPlace(Bfr::Parameterization const &parameterization, FaceShape shape,
+                      Pair const &uv, double tolerance) {
     if (!parameterization.HasSubFaces()) { // by far the most
-        return {FindBasePoint(parameterization.GetFaceSize(), uv[0], uv[1], tolerance),
-                {{1, 0}, {0, 1}},
-                {0, 0}};
+        return {FindBasePoint(shape, uv[0], uv[1], tolerance), {{1, 0}, {0, 1}}, {0, 0}};
     }
     // What is none lies in no sub-face.
     bool const isNone = std::isnan(uv[0]) || std::isnan(uv[1]);
     PlanePlace const place =
         isNone ? PlanePlace{{NAN, NAN}, {1, 0}, {0, 1}, {0, 0}} : FindInPlane(parameterization, uv);
-    return makePlace(
-        FindBasePoint(parameterization.GetFaceSize(), place.coords[0], place.coords[1], tolerance),
-        place);
+    return makePlace(FindBasePoint(shape, place.coords[0], place.coords[1], tolerance), place);
 }
 
-BfrPlace MakeBfrEdgePlace(Bfr::Parameterization const &parameterization, int edge, int i, int n) {
+BfrPlace MakeBfrEdgePlace(Bfr::Parameterization const &parameterization, FaceShape shape, int edge,
+                          int i, int n) {
     double const toEnd = double(i) / n;
     Pair uv;
     parameterization.GetEdgeCoord(edge, toEnd, uv.data());
-    return makePlace(
-        MakeBasePoint(parameterization.GetFaceSize(), edge, {double(n - i) / n, toEnd}),
-        FindInPlane(parameterization, uv));
+    SectorPlace<Pair> place = PlaceOnEdge<Pair>(shape, edge, double(n - i) / n, toEnd);
+    if (place.coords[0] < 0) {
+        place = NameOf(shape, place);
+    }
+    return makePlace(MakeBasePoint(shape, place.sector, place.coords),
+                     FindInPlane(parameterization, uv));
 }
 
-BfrPlace MoveToChild(BfrPlace const &place, CellStep const &step, int faceSize) {
+BfrPlace MoveToChild(BfrPlace const &place, CellStep const &step, FaceShape shape) {
     Pair const coords = step.Apply(place.point.coords);
     auto const &rows = step.map->rows;
     if (step.isChildWhole) {
         // By its own u and v, in which it is twice as large.
         Pair const &u = place.toOwn[0];
         Pair const &v = place.toOwn[1];
-        return {MakeBasePoint(faceSize, place.point.sector, coords),
+        return {MakeBasePoint(shape, place.point.sector, coords),
                 {{2 * u[0], 2 * u[1]}, {2 * v[0], 2 * v[1]}},
                 {}};
     }

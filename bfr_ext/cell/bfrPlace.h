@@ -23,16 +23,18 @@ struct BfrPlace {
 /// coordinates are not numbers where u or v is none.
 ///
 /// \param parameterization  a valid one
+/// \param shape             that of the face, as large as the parameterization's
 /// \param tolerance         that of FindBasePoint()
-BfrPlace FindBfrPlace(Bfr::Parameterization const &parameterization, Pair const &uv,
-                      double tolerance);
+BfrPlace FindBfrPlace(Bfr::Parameterization const &parameterization, FaceShape shape,
+                      Pair const &uv, double tolerance);
 /// \brief The place i/n on an edge, in the direction of the face; i is less than n.
 ///
 /// The derivatives at the middle of an edge are those of the second sub-face, in which Bfr has it.
-BfrPlace MakeBfrEdgePlace(Bfr::Parameterization const &parameterization, int edge, int i, int n);
+BfrPlace MakeBfrEdgePlace(Bfr::Parameterization const &parameterization, FaceShape shape, int edge,
+                          int i, int n);
 
 /// The place in the child that has it.
-BfrPlace MoveToChild(BfrPlace const &place, CellStep const &step, int faceSize);
+BfrPlace MoveToChild(BfrPlace const &place, CellStep const &step, FaceShape shape);
 
 /// \brief Turns derivatives by the coordinates of the plane of a base face into those by u and v, number by number.
 ///

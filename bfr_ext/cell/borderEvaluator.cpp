@@ -128,7 +128,7 @@ void BorderEvaluator<REAL>::setEdge(std::size_t edge) {
         }
     }
     CellType::BorderItem const &item = getItem(edge);
-    if (item.type->IsInLattice()) {
+    if (item.type->IsInLattice() || item.type->IsLongEdge()) {
         _edge = {item.type, nullptr, _points, _stride, item.points.data()};
     } else if (item.rings) {
         _edgeValues.Set(item.rings->rings, item.points.size(), item.points.data(), _points, _stride,

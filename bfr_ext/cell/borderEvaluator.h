@@ -13,7 +13,7 @@ namespace OpenSubdivHex::BfrExt::internal {
 ///
 /// In a regular lattice edges and vertices have sums of their own points.  Where they are plain, long
 /// edges and V-vertices have sums of rings.  Other edges have sums for the long edge that they become in
-/// the first step, too: long edges have far fewer types than edges.
+/// the first step, too: long edges have far fewer types than edges.  The long edge of half a polygon has sums of its own points.
 template <typename REAL>
 class BorderEvaluator {
 public:

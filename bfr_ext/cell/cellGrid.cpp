@@ -22,16 +22,16 @@ constexpr double kExpected = 0.22;
 
 } // namespace
 
-CellGrid::CellGrid(int faceSize)
-    : _faceSize(faceSize), _places(faceSize, kNumSteps), _sources(_places.GetSize()) {
+CellGrid::CellGrid(FaceShape shape)
+    : _shape(shape), _places(shape, kNumSteps), _sources(_places.GetSize()) {
     auto const &corners = HalfCell::kCorners;
-    add({faceSize > 0, 0, 1, {corners[0], corners[1], corners[2], corners[3]}}, kNumSteps,
+    add({shape.size > 0, 0, 1, {corners[0], corners[1], corners[2], corners[3]}}, kNumSteps,
         {0, 0, 0});
 }
 
-CellGrid &CellGrid::Get(int faceSize) {
-    static thread_local std::map<int, CellGrid> grids;
-    return grids.try_emplace(faceSize, faceSize).first->second;
+CellGrid &CellGrid::Get(FaceShape shape) {
+    static thread_local std::map<FaceShape, CellGrid> grids;
+    return grids.try_emplace(shape, shape).first->second;
 }
 
 // Adds a cell, and those that some steps make of it.
@@ -39,10 +39,10 @@ int CellGrid::add(Shape const &shape, int numSteps, Source source) {
     std::size_t const number = _cells.size();
     _cells.emplace_back();
     _cells[number].factor = numSteps == kNumSteps ? kFactorOfCell : kFactorOfChildren;
-    int const numCorners = shape.isWhole ? _faceSize : 4;
+    int const numCorners = shape.isWhole ? _shape.size : 4;
     for (int i = 0; i < numCorners; ++i) {
         int const sample = int(_places.Find(
-            shape.isWhole ? LeafPlaces::Place{i, {shape.scale, 0}}
+            shape.isWhole ? PlaceOnEdge<Pair>(_shape, i, shape.scale, 0.0)
                           : LeafPlaces::Place{shape.sector, shape.corners[std::size_t(i)]}));
         _cells[number].corners.push_back(sample);
         if (numSteps == 0) {
@@ -51,7 +51,7 @@ int CellGrid::add(Shape const &shape, int numSteps, Source source) {
         }
     }
     _cells[number].samples = _cells[number].corners;
-    int const numChildren = shape.isWhole ? _faceSize + 1 : 4;
+    int const numChildren = shape.isWhole ? _shape.GetNumSectors() + 1 : 4;
     for (int i = 0; numSteps > 0 && i < numChildren; ++i) {
         (numSteps == kNumSteps ? source.child : source.grandchild) = i;
         int const child = add(getChild(shape, i), numSteps - 1, source);
@@ -66,7 +66,7 @@ int CellGrid::add(Shape const &shape, int numSteps, Source source) {
     return int(number);
 }
 
-CellGrid::Shape CellGrid::getChild(Shape const &shape, int child) {
+CellGrid::Shape CellGrid::getChild(Shape const &shape, int child) const {
     if (!shape.isWhole) {
         return {false, shape.sector, 0,
                 HalfCell::GetCornersOfChild(shape.corners, std::size_t(child))};
@@ -74,7 +74,8 @@ CellGrid::Shape CellGrid::getChild(Shape const &shape, int child) {
     if (child == 0) {
         return {true, 0, shape.scale / 2, {}};
     }
-    return {false, child - 1, 0, HalfCell::GetCornersAtEdge<Pair>(shape.scale)};
+    return {false, child - 1 + _shape.GetFirstSector(), 0,
+            HalfCell::GetCornersAtEdge<Pair>(shape.scale)};
 }
 
 void CellGrid::Sample(RefinedCells &cells, std::size_t cell, std::vector<double> &samples) const {
@@ -127,8 +128,8 @@ CellPlan const &CellGrid::getPlan(bool isInLattice) {
         for (std::size_t i = 0; i < _places.GetSize(); ++i) {
             places.push_back(_places[i]);
         }
-        plan = std::make_unique<CellPlan const>(_faceSize, kNumSteps, places,
-                                                CellPlan::Use::AllPoints, isInLattice);
+        plan = std::make_unique<CellPlan const>(_shape, kNumSteps, places, CellPlan::Use::AllPoints,
+                                                isInLattice);
     }
     return *plan;
 }
@@ -176,10 +177,10 @@ void CellGrid::Measure(std::vector<double> const &samples, CellMeasures &cell) c
 void CellGrid::MeasureChildren(std::vector<double> const &samples, CellMeasures const &cell,
                                bool isSharp, CellMeasures *children) const {
     // Half children of whole cells have sides as long as these.
-    double const usual = _faceSize > 0 ? cell.thickness : cell.thickness / 4;
+    double const usual = _shape.size > 0 ? cell.thickness : cell.thickness / 4;
     for (std::size_t i = 0; i < _cells[0].children.size(); ++i) {
         measure(samples, _cells[std::size_t(_cells[0].children[i])], children[i]);
-        if (_faceSize > 0 && i == 0) {
+        if (_shape.size > 0 && i == 0) {
             // The samples of a whole child lie on its diagonals, where a saddle may have no height.
             children[i].thickness = std::max(children[i].thickness, kLeastOfWhole * cell.thickness);
         }

@@ -20,10 +20,10 @@ namespace OpenSubdivHex::BfrExt::internal {
 /// One thread uses it at a time.
 class CellGrid {
 public:
-    /// \param faceSize  of whole cells; 0: of half cells
-    explicit CellGrid(int faceSize);
+    /// \param shape  of whole cells; of size 0: of half cells
+    explicit CellGrid(FaceShape shape);
     /// The grid of the calling thread.
-    static CellGrid &Get(int faceSize);
+    static CellGrid &Get(FaceShape shape);
 
     /// Children of the cell, without their own.
     int GetNumChildren() const { return int(_cells[0].children.size()); }
@@ -74,13 +74,13 @@ private:
     };
 
     int add(Shape const &shape, int numSteps, Source source);
-    static Shape getChild(Shape const &shape, int child);
+    Shape getChild(Shape const &shape, int child) const;
     void sampleByCorners(RefinedCells &cells, std::size_t cell, std::vector<double> &samples) const;
     CellPlan const &getPlan(bool isInLattice);
     void measure(std::vector<double> const &samples, Cell const &cell,
                  CellMeasures &measures) const;
 
-    int const _faceSize;
+    FaceShape const _shape;
     LeafPlaces const _places;
     std::vector<Cell> _cells;
     std::vector<Source> _sources; // by sample

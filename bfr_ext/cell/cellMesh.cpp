@@ -21,44 +21,42 @@ std::size_t CellMesh::Hash::operator()(std::array<std::int32_t, 3> const &key) c
     return std::size_t(hash);
 }
 
-std::array<std::int32_t, 3> CellMesh::getKey(int faceSize, int sector, Place const &place) {
-    if (place[0] == 0) {
-        return {(sector + 1) % faceSize, place[1], 0};
-    }
-    return {sector, place[0], place[1]};
+std::array<std::int32_t, 3> CellMesh::getKey(int sector, Place const &place) const {
+    SectorPlace<Place> const name = NameOf(_shape, SectorPlace<Place>{sector, place});
+    return {name.sector, name.coords[0], name.coords[1]};
 }
 
 int CellMesh::Find(int sector, Place const &place) const {
-    auto const found = _numbers.find(getKey(_faceSize, sector, place));
+    auto const found = _numbers.find(getKey(sector, place));
     return found == _numbers.end() ? -1 : found->second;
 }
 
-void CellMesh::add(int sector, Place const &place, int cell, int corner) {
-    std::array<std::int32_t, 3> const key = getKey(_faceSize, sector, place);
+void CellMesh::add(SectorPlace<Place> const &place, int cell, int corner) {
+    std::array<std::int32_t, 3> const key = getKey(place.sector, place.coords);
     if (_numbers.emplace(key, int(_verts.size())).second) {
         _verts.push_back({int(key[0]), key[1], key[2], cell, corner});
     }
 }
 
 CellMesh::CellMesh(CellTree const &tree, Polyline const edges[], CellShape const &section)
-    : _tree(tree), _faceSize(tree.GetFaceSize()), _maxLevel(tree.GetMaxLevel()), _section(section) {
-    auto numVerts = std::size_t(tree.GetNumCells()) + std::size_t(_faceSize);
-    for (int edge = 0; edge < _faceSize; ++edge) {
+    : _tree(tree), _shape(tree.GetFaceShape()), _maxLevel(tree.GetMaxLevel()), _section(section) {
+    auto numVerts = std::size_t(tree.GetNumCells()) + std::size_t(_shape.size);
+    for (int edge = 0; edge < _shape.size; ++edge) {
         numVerts += std::size_t(edges[edge].GetNumPoints());
     }
     _verts.reserve(numVerts);
-    for (int sector = 0; sector < _faceSize; ++sector) {
-        add(sector, {kOne, 0}, 0, sector);
+    for (int corner = 0; corner < _shape.size; ++corner) {
+        add(PlaceOnEdge<Place>(_shape, corner, kOne, 0), 0, corner);
     }
     forEachCellByLevel(CellShape::MakeFace(), [&](CellShape const &cell) {
         if (_tree.IsRefined(cell.number)) {
             addInside(cell);
         }
     });
-    for (int edge = 0; edge < _faceSize; ++edge) {
+    for (int edge = 0; edge < _shape.size; ++edge) {
         for (Polyline::Place const place : edges[edge].GetPlaces()) {
             std::int32_t const end = kOne / Polyline::kLength * place;
-            add(edge, {kOne - end, end}, -1, 0);
+            add(PlaceOnEdge<Place>(_shape, edge, kOne - end, end), -1, 0);
         }
     }
 }
@@ -67,13 +65,13 @@ CellMesh::CellMesh(CellTree const &tree, Polyline const edges[], CellShape const
 void CellMesh::addInside(CellShape const &cell) {
     CellShape const child = cell.GetChild(_tree, 0);
     if (child.isWhole) {
-        for (int sector = 0; sector < _faceSize; ++sector) {
-            add(sector, {child.scale, 0}, child.number, sector);
+        for (int corner = 0; corner < _shape.size; ++corner) {
+            add(PlaceOnEdge<Place>(_shape, corner, child.scale, 0), child.number, corner);
         }
         return;
     }
     for (std::size_t i = 0; i < 4; ++i) {
-        add(cell.sector, child.corners[i], child.number, int(i));
+        add({cell.sector, child.corners[i]}, child.number, int(i));
     }
 }
 
@@ -121,19 +119,23 @@ void CellMesh::AppendBetween(int sector, Place const &start, Place const &end,
 void CellMesh::appendSides(CellShape const &cell, int first, int count,
                            std::vector<int> &polygon) const {
     for (int i = first; i < first + count; ++i) {
-        int const sector = cell.isWhole ? i : cell.sector;
-        Place const start = cell.isWhole ? Place{cell.scale, 0} : cell.corners[std::size_t(i)];
-        Place const end =
-            cell.isWhole ? Place{0, cell.scale} : cell.corners[(std::size_t(i) + 1) % 4];
-        polygon.push_back(Find(sector, start));
-        AppendBetween(sector, start, end, polygon);
+        SectorPlace<Place> start = {cell.sector, cell.corners[std::size_t(i) % 4]};
+        Place end = cell.corners[(std::size_t(i) + 1) % 4];
+        if (cell.isWhole) {
+            start = PlaceOnEdge<Place>(_shape, i, cell.scale, 0);
+            end = PlaceOnEdge<Place>(_shape, i, 0, cell.scale).coords;
+        }
+        polygon.push_back(Find(start.sector, start.coords));
+        AppendBetween(start.sector, start.coords, end, polygon);
     }
 }
 
 std::vector<int> CellMesh::GetEdgeVertices(int edge) const {
-    std::vector<int> result = {Find(edge, {kOne, 0})};
-    AppendBetween(edge, {kOne, 0}, {0, kOne}, result);
-    result.push_back(Find(edge, {0, kOne}));
+    auto const [sector, start] = PlaceOnEdge<Place>(_shape, edge, kOne, 0);
+    Place const end = PlaceOnEdge<Place>(_shape, edge, 0, kOne).coords;
+    std::vector<int> result = {Find(sector, start)};
+    AppendBetween(sector, start, end, result);
+    result.push_back(Find(sector, end));
     return result;
 }
 
@@ -146,7 +148,7 @@ std::vector<int> CellMesh::GetPolygon(CellShape const &cell) const {
 void CellMesh::setPolygon(CellShape const &cell, Polygon &polygon) const {
     polygon.verts.clear();
     polygon.level = cell.level;
-    appendSides(cell, 0, cell.isWhole ? _faceSize : 4, polygon.verts);
+    appendSides(cell, 0, cell.isWhole ? _shape.size : 4, polygon.verts);
 }
 
 void CellMesh::ForEachCell(std::function<void(Polygon &)> const &function) const {

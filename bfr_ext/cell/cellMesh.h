@@ -16,8 +16,7 @@ namespace OpenSubdivHex::BfrExt::internal {
 /// sides.
 class CellMesh {
 public:
-    /// A vertex: its sector and the coordinates a and b there, in units of 2^-kBits.  On the line from
-    /// the centre to a corner it is in the sector that begins there.
+    /// A vertex: its sector and the coordinates a and b there, in units of 2^-kBits, by NameOf().
     /// The cell is the first one that it was a corner of, or -1 where it is that of a neighbour alone.
     struct Vertex {
         int sector;
@@ -25,6 +24,8 @@ public:
         std::int32_t b;
         int cell;
         int corner;
+
+        SectorPlace<CellShape::Place> GetPlace() const { return {sector, {a, b}}; }
     };
     using Place = CellShape::Place;
 
@@ -62,8 +63,8 @@ private:
         std::size_t operator()(std::array<std::int32_t, 3> const &key) const;
     };
 
-    static std::array<std::int32_t, 3> getKey(int faceSize, int sector, Place const &place);
-    void add(int sector, Place const &place, int cell, int corner);
+    std::array<std::int32_t, 3> getKey(int sector, Place const &place) const;
+    void add(SectorPlace<Place> const &place, int cell, int corner);
     void addInside(CellShape const &cell);
     template <typename FUNCTION>
     void visit(CellShape const &cell, int level, FUNCTION const &function) const;
@@ -73,7 +74,7 @@ private:
     void appendSides(CellShape const &cell, int first, int count, std::vector<int> &polygon) const;
 
     CellTree const &_tree;
-    int const _faceSize;
+    FaceShape const _shape;
     int const _maxLevel;
     CellShape const _section;
     std::vector<Vertex> _verts;

@@ -35,15 +35,15 @@ void joinRuns(std::vector<PlaceRun> &runs) {
 
 } // namespace
 
-LeafPlaces::LeafPlaces(int faceSize, int numSteps) : _faceSize(faceSize), _numSteps(numSteps) {
-    if (faceSize > 0) {
-        for (int sector = 0; sector < faceSize; ++sector) {
-            add({sector, {1, 0}});
+LeafPlaces::LeafPlaces(FaceShape shape, int numSteps) : _shape(shape), _numSteps(numSteps) {
+    if (shape.size > 0) {
+        for (int corner = 0; corner < shape.size; ++corner) {
+            add(PlaceOnEdge<Pair>(shape, corner, 1.0, 0.0));
         }
         refine({-1, {{{1, 0}}}}, numSteps);
         // Points on the sides come last: tessellations have them apart, or first.
-        std::stable_partition(_places.begin(), _places.end(), [](Place const &place) {
-            return place.coords[0] + place.coords[1] != 1;
+        std::stable_partition(_places.begin(), _places.end(), [&](Place const &place) {
+            return FindOnEdge(shape, place, 1.0).edge < 0;
         });
     } else {
         for (Pair const &corner : HalfCell::kCorners) {
@@ -68,10 +68,8 @@ LeafPlaces::LeafPlaces(int faceSize, int numSteps) : _faceSize(faceSize), _numSt
 
 // On the line from the centre to a corner, the sector is that which begins there.
 LeafPlaces::Key LeafPlaces::getKey(Place const &place) const {
-    if (_faceSize > 0 && place.coords[0] == 0) {
-        return {(place.sector + 1) % _faceSize, place.coords[1], 0};
-    }
-    return {place.sector, place.coords[0], place.coords[1]};
+    Place const name = _shape.size > 0 ? NameOf(_shape, place) : place;
+    return {name.sector, name.coords[0], name.coords[1]};
 }
 
 // Rows that are wanted are mostly the first ones: of what is not inside, cells have the last side most.
@@ -95,9 +93,7 @@ LeafPlaces::Group LeafPlaces::findGroup(Pair const &coords) {
 void LeafPlaces::add(Place const &place) {
     if (_rows.emplace(getKey(place), 0).second) {
         // Derivatives are from the side of the sector that begins at the line.
-        bool const isAtEnd = _faceSize > 0 && place.coords[0] == 0;
-        _places.push_back(isAtEnd ? Place{(place.sector + 1) % _faceSize, {place.coords[1], 0}}
-                                  : place);
+        _places.push_back(_shape.size > 0 ? NameOf(_shape, place) : place);
     }
 }
 
@@ -110,9 +106,11 @@ void LeafPlaces::refine(Cell const &root, int numSteps) {
             if (cell.sector < 0) {
                 double const scale = cell.corners[0][0];
                 children.push_back({-1, {{{scale / 2, 0}}}});
-                for (int sector = 0; sector < _faceSize; ++sector) {
-                    add({sector, {scale / 2, 0}});
-                    children.push_back({sector, HalfCell::GetCornersAtEdge<Pair>(scale)});
+                for (int corner = 0; corner < _shape.size; ++corner) {
+                    add(PlaceOnEdge<Pair>(_shape, corner, scale / 2, 0.0));
+                    if (corner >= _shape.GetFirstSector()) {
+                        children.push_back({corner, HalfCell::GetCornersAtEdge<Pair>(scale)});
+                    }
                 }
                 continue;
             }
@@ -127,19 +125,19 @@ void LeafPlaces::refine(Cell const &root, int numSteps) {
     }
 }
 
-CellPlan::CellPlan(int faceSize, int level, std::vector<LeafPlaces::Place> const &places, Use use,
-                   bool isInLattice)
-    : _faceSize(faceSize) {
+CellPlan::CellPlan(FaceShape shape, int level, std::vector<LeafPlaces::Place> const &places,
+                   Use use, bool isInLattice)
+    : _shape(shape) {
     _nodes.push_back({0, true, 0, level, {}, nullptr, {}, {{1, 0}, {0, 1}}, {}});
     if (isInLattice && level <= kNumStepsOfFaces) {
         setLeaf(_nodes[0]);
     }
     for (std::size_t i = 0; i < places.size(); ++i) {
         LeafPlaces::Place place = places[i];
-        if (use == Use::Points && place.coords[0] + place.coords[1] == 1) {
+        if (use == Use::Points && FindOnEdge(shape, place, 1.0).edge >= 0) {
             continue;
         }
-        BasePoint const base = MakeBasePoint(faceSize, place.sector, place.coords);
+        BasePoint const base = MakeBasePoint(shape, place.sector, place.coords);
         Pair toCoords[2] = {base.toCoords[0], base.toCoords[1]};
         std::size_t node = 0;
         bool isCorner = false;
@@ -148,7 +146,8 @@ CellPlan::CellPlan(int faceSize, int level, std::vector<LeafPlaces::Place> const
             if (isCorner) {
                 break;
             }
-            CellStep const step = FindCellStep(_nodes[node].isWhole, place.sector, place.coords);
+            CellStep const step = FindCellStep(_nodes[node].isWhole ? shape : FaceShape(),
+                                               place.sector, place.coords);
             place.coords = step.map->Apply(place.coords);
             Pair const before[2] = {toCoords[0], toCoords[1]};
             for (std::size_t k = 0; k < 4; ++k) {
@@ -177,14 +176,15 @@ CellPlan::CellPlan(int faceSize, int level, std::vector<LeafPlaces::Place> const
 bool CellPlan::addCorner(std::size_t node, LeafPlaces::Place const &place,
                          Pair const (&toCoords)[2], int number) {
     Node &cell = _nodes[node];
-    int const corner = FindCellCorner(cell.isWhole ? _faceSize : 0, place.sector, place.coords);
+    int const corner =
+        FindCellCorner(cell.isWhole ? _shape : FaceShape(), place.sector, place.coords);
     if (corner < 0) {
         return false;
     }
     CornerPlace result = {std::size_t(corner), number, {toCoords[0], toCoords[1]}};
     if (cell.isWhole) {
         // The corner has the coordinates of its own sector.
-        BasePoint const own = MakeBasePoint(_faceSize, corner, {});
+        BasePoint const own = MakeBasePoint(_shape, _shape.GetSectorOfCorner(corner), {});
         for (std::size_t i = 0; i < 2; ++i) {
             for (std::size_t k = 0; k < 2; ++k) {
                 result.toCoords[i][k] = std::ldexp(own.toCoords[i][k], cell.depth);
@@ -225,10 +225,10 @@ std::size_t CellPlan::findChild(std::size_t node, CellStep const &step, Pair con
 }
 
 void CellPlan::setLeaf(Node &node) {
-    int const size = node.isWhole ? _faceSize : 0;
-    std::unique_ptr<LeafPlaces const> &leafPlaces = _leafPlaces[{size, node.numSteps}];
+    FaceShape const shape = node.isWhole ? _shape : FaceShape();
+    std::unique_ptr<LeafPlaces const> &leafPlaces = _leafPlaces[{shape, node.numSteps}];
     if (!leafPlaces) {
-        leafPlaces = std::make_unique<LeafPlaces>(size, node.numSteps);
+        leafPlaces = std::make_unique<LeafPlaces>(shape, node.numSteps);
     }
     node.leaf = leafPlaces.get();
 }

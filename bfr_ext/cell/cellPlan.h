@@ -17,13 +17,10 @@ namespace OpenSubdivHex::BfrExt::internal {
 class LeafPlaces {
 public:
     /// A place in a cell; of no matter in half cells: the sector.
-    struct Place {
-        int sector;
-        Pair coords;
-    };
+    using Place = SectorPlace<Pair>;
 
-    /// \param faceSize  of a whole cell; 0: of half cells
-    LeafPlaces(int faceSize, int numSteps);
+    /// \param shape  of a whole cell; of size 0: of half cells
+    LeafPlaces(FaceShape shape, int numSteps);
 
     int GetNumSteps() const { return _numSteps; }
     std::size_t GetSize() const { return _places.size(); }
@@ -46,7 +43,7 @@ private:
     void add(Place const &place);
     void refine(Cell const &root, int numSteps);
 
-    int const _faceSize;
+    FaceShape const _shape;
     int const _numSteps;
     std::vector<Place> _places;
     std::map<Key, std::size_t> _rows;
@@ -90,7 +87,7 @@ public:
     /// \param level        that of the places, at most
     /// \param places       with Use::Points, those on the border of the face are made apart
     /// \param isInLattice  whether many faces are of the type of the base face
-    CellPlan(int faceSize, int level, std::vector<LeafPlaces::Place> const &places, Use use,
+    CellPlan(FaceShape shape, int level, std::vector<LeafPlaces::Place> const &places, Use use,
              bool isInLattice);
 
     /// Node 0 is the face.
@@ -102,9 +99,9 @@ private:
     void setLeaf(Node &node);
     std::size_t findChild(std::size_t node, CellStep const &step, Pair const (&toCoords)[2]);
 
-    int const _faceSize;
+    FaceShape const _shape;
     std::vector<Node> _nodes;
-    std::map<std::pair<int, int>, std::unique_ptr<LeafPlaces const>> _leafPlaces;
+    std::map<std::pair<FaceShape, int>, std::unique_ptr<LeafPlaces const>> _leafPlaces;
 };
 
 } // namespace OpenSubdivHex::BfrExt::internal

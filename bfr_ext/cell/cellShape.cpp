@@ -86,14 +86,17 @@ CellShape CellShape::GetChild(CellTree const &tree, int child) const {
         return {first, level + 1, true, 0, scale / 2, {}};
     }
     if (isWhole) {
-        return {first, level + 1, false, child - 1, 0, HalfCell::GetCornersAtEdge<Place>(scale)};
+        return {first, level + 1,
+                false, child - 1 + tree.GetFaceShape().GetFirstSector(),
+                0,     HalfCell::GetCornersAtEdge<Place>(scale)};
     }
     return {first,  level + 1, false,
             sector, 0,         HalfCell::GetCornersOfChild(corners, std::size_t(child))};
 }
 
 // Cells have their corners on the sides of those that they meet, or have corners of these on their own.
-bool CellShape::Touches(int faceSize, CellShape const &other) const {
+bool CellShape::Touches(FaceShape shape, CellShape const &other) const {
+    int const faceSize = shape.size;
     if (!other.isWhole) {
         int const turn = (other.sector - sector + faceSize) % faceSize;
         if (turn > 1 && turn < faceSize - 1) {

@@ -2,6 +2,8 @@
 #ifndef OPENSUBDIVHEX_BFR_EXT_CELL_CELL_SHAPE_H
 #define OPENSUBDIVHEX_BFR_EXT_CELL_CELL_SHAPE_H
 
+#include "sectors.h"
+
 #include "bfr_ext/cellTree.h"
 
 #include <array>
@@ -27,8 +29,9 @@ struct CellShape {
 
     /// Whether a half cell has a point in common with another cell.
     ///
+    /// \param shape  that of the face
     /// \param other  has not that cell inside of it, nor lies inside of that
-    bool Touches(int faceSize, CellShape const &other) const;
+    bool Touches(FaceShape shape, CellShape const &other) const;
 
     int number; ///< in the tree
     int level;

@@ -54,7 +54,8 @@ BasePoint makeBasePoint(POLYGON const &polygon, int sector, Pair const &coords) 
 }
 
 template <typename POLYGON>
-BasePoint findBasePoint(POLYGON const &polygon, int size, double u, double v, double tolerance) {
+BasePoint findBasePoint(POLYGON const &polygon, FaceShape shape, double u, double v,
+                        double tolerance) {
     Pair const center = polygon.GetCenter();
     // Products of finite coordinates are finite.
     double const x = std::clamp(u - center[0], -kFar, kFar);
@@ -67,12 +68,12 @@ BasePoint findBasePoint(POLYGON const &polygon, int size, double u, double v, do
         point.toCoords[1] = b;
     };
     BasePoint best;
-    if (size == 4) { // by far the most
+    if (shape == FaceShape(4)) { // by far the most
         constexpr int kSectors[2][2] = {{0, 1}, {3, 2}};
         findIn(kSectors[y > x ? 1 : 0][y > -x ? 1 : 0], best);
     } else {
-        findIn(0, best);
-        for (int sector = 1; sector < size; ++sector) {
+        findIn(shape.GetFirstSector(), best);
+        for (int sector = best.sector + 1; sector < shape.size; ++sector) {
             BasePoint point;
             findIn(sector, point);
             if (std::min(point.coords[0], point.coords[1]) >
@@ -87,30 +88,31 @@ BasePoint findBasePoint(POLYGON const &polygon, int size, double u, double v, do
     best.coords = clampToSector(best.coords);
     // Between two sectors it is the second, as in tessellations.
     if (best.coords[0] == 0) {
-        best = makeBasePoint(polygon, (best.sector + 1) % size, {best.coords[1], 0});
+        SectorPlace<Pair> const name = NameOf(shape, SectorPlace<Pair>{best.sector, best.coords});
+        best = makeBasePoint(polygon, name.sector, name.coords);
     }
     return best;
 }
 
 } // namespace
 
-BasePoint FindBasePoint(int size, double u, double v, double tolerance) {
+BasePoint FindBasePoint(FaceShape shape, double u, double v, double tolerance) {
     return UsePolygon(
-        size, [&](auto const &polygon) { return findBasePoint(polygon, size, u, v, tolerance); });
+        shape, [&](auto const &polygon) { return findBasePoint(polygon, shape, u, v, tolerance); });
 }
 
-BasePoint MakeBasePoint(int size, int sector, Pair const &coords) {
-    return UsePolygon(size,
+BasePoint MakeBasePoint(FaceShape shape, int sector, Pair const &coords) {
+    return UsePolygon(shape,
                       [&](auto const &polygon) { return makeBasePoint(polygon, sector, coords); });
 }
 
-CellStep FindCellStep(bool isWhole, int sector, Pair const &coords) {
-    if (!isWhole) {
+CellStep FindCellStep(FaceShape shape, int sector, Pair const &coords) {
+    if (shape.size == 0) {
         int const child = HalfCell::FindChild(coords);
         return {std::size_t(child), &HalfCell::kChildren[child], false};
     }
     if (coords[0] + coords[1] > 0.5) {
-        return {std::size_t(sector) + 1, &HalfCell::kFromSector, false};
+        return {std::size_t(sector + 1 - shape.GetFirstSector()), &HalfCell::kFromSector, false};
     }
     return {0, &kToFFace, true};
 }
@@ -120,9 +122,11 @@ Pair CellStep::Apply(Pair const &coords) const {
     return isChildWhole ? clampToSector(ofChild) : clampToHalf(ofChild);
 }
 
-int FindCellCorner(int faceSize, int sector, Pair const &coords) {
-    if (faceSize > 0) {
-        return coords == Pair{1, 0} ? sector : coords == Pair{0, 1} ? (sector + 1) % faceSize : -1;
+int FindCellCorner(FaceShape shape, int sector, Pair const &coords) {
+    if (shape.size > 0) {
+        return coords == Pair{1, 0}   ? sector
+               : coords == Pair{0, 1} ? (sector + 1) % shape.size
+                                      : -1;
     }
     auto const *const corner =
         std::find(std::begin(HalfCell::kCorners), std::end(HalfCell::kCorners), coords);
@@ -153,7 +157,7 @@ void goBack(std::vector<ChildStep const *> const &steps, StencilOf of, std::vect
 } // namespace
 
 int CellStencil::Place::FindCorner() const {
-    return FindCellCorner(type->IsWhole() ? type->GetNumCorners() : 0, sector, coords);
+    return FindCellCorner(type->GetShape(), sector, coords);
 }
 
 void CellStencil::Place::FindCornerWeights(std::vector<double> &weights) const {
@@ -163,8 +167,13 @@ void CellStencil::Place::FindCornerWeights(std::vector<double> &weights) const {
         return;
     }
     auto const numCorners = std::size_t(type->GetNumCorners());
-    double const inner = (1 - coords[0] - coords[1]) / double(numCorners);
-    weights.assign(numCorners, inner);
+    double const inner = 1 - coords[0] - coords[1];
+    if (type->IsHalfPolygon()) { // of the centre, in the middle of the long edge
+        weights.assign(numCorners, 0.0);
+        weights[0] = weights[1] = 0.5 * inner;
+    } else {
+        weights.assign(numCorners, inner / double(numCorners));
+    }
     weights[std::size_t(sector)] += coords[0];
     weights[(std::size_t(sector) + 1) % numCorners] += coords[1];
 }
@@ -172,10 +181,17 @@ void CellStencil::Place::FindCornerWeights(std::vector<double> &weights) const {
 std::vector<Pair> CellStencil::Place::FindCornersInPlane() const {
     std::vector<Pair> corners;
     if (type->IsWhole()) {
-        BasePolygon const polygon(type->GetNumCorners());
+        BasePolygon const polygon(type->GetShape());
+        Pair mean = {0, 0};
+        for (int i = 0; type->IsHalfPolygon() && i < polygon.GetSize(); ++i) {
+            Pair const corner = polygon.GetCorner(i);
+            mean = {mean[0] + corner[0] / polygon.GetSize(),
+                    mean[1] + corner[1] / polygon.GetSize()};
+        }
         for (int i = 0; i < polygon.GetSize(); ++i) {
             Pair const corner = polygon.GetCorner(i);
-            corners.push_back({std::ldexp(corner[0], -depth), std::ldexp(corner[1], -depth)});
+            corners.push_back(
+                {std::ldexp(corner[0] - mean[0], -depth), std::ldexp(corner[1] - mean[1], -depth)});
         }
         return corners;
     }
@@ -196,7 +212,8 @@ void CellStencil::Place::AddDerivatives(std::size_t corner, double weight,
     Pair ofCorner[2] = {toCoords[0], toCoords[1]};
     if (type->IsWhole()) {
         // The corner has the coordinates of its own sector, larger by what the steps have made them.
-        BasePoint const point = MakeBasePoint(type->GetNumCorners(), int(corner), {});
+        BasePoint const point =
+            MakeBasePoint(type->GetShape(), type->GetShape().GetSectorOfCorner(int(corner)), {});
         for (std::size_t i = 0; i < 2; ++i) {
             ofCorner[i] = {std::ldexp(point.toCoords[i][0], depth),
                            std::ldexp(point.toCoords[i][1], depth)};
@@ -221,7 +238,7 @@ CellStencil::Place CellStencil::begin(BasePoint const &point) {
 
 // To the child that has the point.
 void CellStencil::takeStep(Place &place) {
-    CellStep const step = FindCellStep(place.type->IsWhole(), place.sector, place.coords);
+    CellStep const step = FindCellStep(place.type->GetShape(), place.sector, place.coords);
     CellMap const *const map = step.map;
     CellType::Child const &next = place.type->GetChildren()[step.child];
     place.coords = step.Apply(place.coords);

@@ -13,19 +13,16 @@ struct BasePoint {
     int sector;
     Pair coords;
     Pair toCoords[2]; ///< of u and v: the derivatives of the coordinates by them
-
-    /// Whether it lies on the edge of the sector.
-    bool IsOnBorder() const { return coords[0] + coords[1] == 1; }
 };
 
-/// \brief Finds a point of the plane of a base face of \p size sides, or where the line from the
+/// \brief Finds a point of the plane of a base face, or where the line from the
 /// centre to it leaves the face.  Its coordinates are not numbers where u or v is none.
 ///
 /// \param tolerance  of coordinates: those that are so close to a multiple of a small power of 1/2, as
 ///                   vertices have, are taken for it; 0: none are
-BasePoint FindBasePoint(int size, double u, double v, double tolerance);
+BasePoint FindBasePoint(FaceShape shape, double u, double v, double tolerance);
 /// The point with coordinates in a sector, which are inside.
-BasePoint MakeBasePoint(int size, int sector, Pair const &coords);
+BasePoint MakeBasePoint(FaceShape shape, int sector, Pair const &coords);
 
 /// \brief Which child of a cell has a point, and how coordinates become those in the child.
 struct CellStep {
@@ -36,13 +33,14 @@ struct CellStep {
     CellMap const *map;
     bool isChildWhole;
 };
+/// \param shape           of a whole cell; of size 0: of half cells
 /// \param sector, coords  of the point in the cell; the sector of a whole cell alone matters
-CellStep FindCellStep(bool isWhole, int sector, Pair const &coords);
+CellStep FindCellStep(FaceShape shape, int sector, Pair const &coords);
 
 /// \brief Which corner of a cell a point is, or -1.
 ///
-/// \param faceSize  of a whole cell; 0: of half cells
-int FindCellCorner(int faceSize, int sector, Pair const &coords);
+/// \param shape  of a whole cell; of size 0: of half cells
+int FindCellCorner(FaceShape shape, int sector, Pair const &coords);
 
 /// Sources of stencils.
 enum class StencilOf {

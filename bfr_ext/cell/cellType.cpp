@@ -125,9 +125,7 @@ std::size_t GetCellHeapSize(CellPatch const &cell) {
 }
 
 CellType::CellType(CellTypes &types, CellPatch cell, CellRules const &rules)
-    : _types(types), _cell(std::move(cell)),
-      _faceCells(IsWhole() ? FarExt::internal::FindCellsOfBaseCell(_cell)
-                           : FarExt::internal::FaceCells{_cell.GetNumCorners(), 0}),
+    : _types(types), _cell(std::move(cell)), _faceCells(FarExt::internal::FindCellsOfCell(_cell)),
       _numPoints(int(_cell.patch.sources.size())), _isInLattice(isInLattice(_cell.patch)),
       _isSharp(isSharp(_cell.patch)), _rules(rules), _borderItems(types.GetMemory()),
       _patterns(types.GetMemory()) {}
@@ -170,7 +168,7 @@ std::vector<Vector> const &CellType::GetCornerPoints() const {
         } else {
             for (CornerLimit &limit : _types.FindLimits(_cell, _rules)) {
                 points.push_back(std::move(limit.weights));
-                if (_cell.kind == CellKind::Whole || _cell.kind == CellKind::Half) {
+                if (IsWhole() || _cell.kind == CellKind::Half) {
                     tangents.push_back(std::move(limit.tangents));
                 }
             }
@@ -195,7 +193,7 @@ void CellType::findDifferences(int corner, int numSteps, Vector (&result)[2]) co
     CellMap map = {{{1, 0}, {0, 1}}, {0, 0}};
     std::vector<ChildStep const *> steps;
     for (int i = 0; i < numSteps; ++i) {
-        CornerChild const next = type->findCornerChild(corner);
+        CornerChild const next = FindCornerChild(type->GetShape(), corner);
         Child const &child = type->GetChildren()[next.child];
         map = Concatenate(map, *next.map);
         corner = next.corner;
@@ -223,14 +221,6 @@ void CellType::findDifferences(int corner, int numSteps, Vector (&result)[2]) co
     for (std::size_t k = 0; k < 2; ++k) {
         result[k] = map.GetDerivatives(differences, k);
     }
-}
-
-CellType::CornerChild CellType::findCornerChild(int corner) const {
-    if (IsWhole()) {
-        return {std::size_t(corner) + 1, 0, &HalfCell::kFromSector};
-    }
-    int const child = HalfCell::kCornerChildren[corner];
-    return {std::size_t(child), HalfCell::kCornersOfChildren[corner], &HalfCell::kChildren[child]};
 }
 
 // The derivatives that the cell before the last has.
@@ -281,7 +271,7 @@ template <typename FIND, typename TURN>
 CellType::Derivatives const &CellType::getDerivatives(PatternOf of, int corner, FIND const &find,
                                                       TURN const &turn) const {
     return _patterns.Get<Derivatives>(PatternTable::GetKind<double>(of), &corner, &corner + 1, [&] {
-        CornerChild const next = findCornerChild(corner);
+        CornerChild const next = FindCornerChild(GetShape(), corner);
         Child const &child = GetChildren()[next.child];
         Derivatives const ofChild = find(*child.type, next.corner);
         Derivatives result;
@@ -363,7 +353,7 @@ std::vector<CellType::Corner> const &CellType::GetCorners() const {
         std::vector<Corner> corners(GetCornerPoints().size());
         for (std::size_t i = 0; i < corners.size(); ++i) {
             corners[i].point = GetCornerPoints()[i];
-            CornerChild const next = findCornerChild(int(i));
+            CornerChild const next = FindCornerChild(GetShape(), int(i));
             Child const &child = GetChildren()[next.child];
             Derivatives const &ofChild = child.type->GetParentDerivatives(next.corner);
             for (std::size_t k = 0; k < 2; ++k) {

@@ -50,7 +50,7 @@ public:
     };
 
     /// The surface at a corner, as sums of points: it, and its first derivatives by the coordinates of
-    /// HalfCell or, in a whole cell, of the sector that begins at the corner.
+    /// HalfCell or, in a whole cell, of the sector FaceShape::GetSectorOfCorner().
     struct Corner {
         std::size_t GetHeapSize() const {
             return GetHeapSizes(point, derivatives[0], derivatives[1]);
@@ -63,7 +63,16 @@ public:
     CellType(CellTypes &types, FarExt::internal::CellPatch cell, CellRules const &rules);
 
     FarExt::internal::CellPatch const &GetCell() const { return _cell; }
-    bool IsWhole() const { return _cell.kind == FarExt::internal::CellKind::Whole; }
+    /// Whether it has sectors: it is of a base face, or of the F-face that comes of it.
+    bool IsWhole() const {
+        return _cell.kind == FarExt::internal::CellKind::Whole || IsHalfPolygon();
+    }
+    bool IsHalfPolygon() const { return _cell.kind == FarExt::internal::CellKind::HalfPolygon; }
+    /// The shape of a whole cell; of size 0 of others.
+    FaceShape GetShape() const {
+        return IsWhole() ? FaceShape(GetNumCorners(), IsHalfPolygon()) : FaceShape();
+    }
+    bool IsLongEdge() const { return _cell.kind == FarExt::internal::CellKind::LongEdge; }
     bool IsVertex() const { return _cell.kind == FarExt::internal::CellKind::Vertex; }
     int GetNumCorners() const { return _cell.GetNumCorners(); }
     /// The cells that a base face is for its patches.
@@ -150,14 +159,6 @@ public:
     MemoryCount &GetMemory() const;
 
 private:
-    // The child that has a corner, which corner of it that is, and the child's coordinates.
-    struct CornerChild {
-        std::size_t child;
-        int corner;
-        CellMap const *map;
-    };
-
-    CornerChild findCornerChild(int corner) const;
     void findDifferences(int corner, int numSteps, std::vector<double> (&result)[2]) const;
     Derivatives findEarlierDerivatives(int corner) const;
     template <typename FIND, typename TURN>

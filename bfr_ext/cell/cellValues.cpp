@@ -26,7 +26,7 @@ void CellValues::setBase(int numPoints, double const *controlPoints, int length)
     _numPoints = numPoints;
     _isRefined = false;
     _isInner = false;
-    _faceSize = _plain ? GetNumChildren() - 1 : _type->GetNumCorners();
+    _faceShape = GetShape();
     // Behind them one of zeros, for rings.
     _points.resize(std::max(_points.size(), (std::size_t(numPoints) + 1) * _paddedSize));
     for (std::size_t i = 0; i < std::size_t(numPoints); ++i) {
@@ -68,7 +68,7 @@ void CellValues::SetChild(CellValues const &parent, int child) {
     _plain = nullptr;
     _isRefined = false;
     _isInner = false;
-    _faceSize = parent._faceSize;
+    _faceShape = parent._faceShape;
     auto const grow = [&](int numPoints) {
         _numPoints = numPoints;
         _points.resize(std::max(_points.size(), std::size_t(numPoints) * _paddedSize));
@@ -112,7 +112,7 @@ void CellValues::SetChild(CellValues const &parent, int child) {
 
 void CellValues::findCoords(CellValues const &parent, int child) {
     if (parent._plain || parent._type->IsWhole()) {
-        _sector = child - 1;
+        _sector = child - 1 + _faceShape.GetFirstSector();
         for (std::size_t i = 0; i < 2; ++i) {
             Pair const &row = HalfCell::kFromSector.rows[i];
             _toCoords[i] = {std::ldexp(row[0], parent._level), std::ldexp(row[1], parent._level)};
@@ -156,13 +156,14 @@ void CellValues::EvaluateCorner(int corner, double *du, double *dv) const {
     Pair toCoords[2];
     if (type.IsWhole()) {
         // The corner has the coordinates of its own sector, larger by what the steps have made them.
-        BasePoint const sector = MakeBasePoint(type.GetNumCorners(), corner, {});
+        BasePoint const sector =
+            MakeBasePoint(type.GetShape(), type.GetShape().GetSectorOfCorner(corner), {});
         for (std::size_t i = 0; i < 2; ++i) {
             toCoords[i] = {std::ldexp(sector.toCoords[i][0], _level),
                            std::ldexp(sector.toCoords[i][1], _level)};
         }
     } else {
-        BasePoint const sector = MakeBasePoint(_faceSize, _sector, {});
+        BasePoint const sector = MakeBasePoint(_faceShape, _sector, {});
         for (std::size_t i = 0; i < 2; ++i) {
             for (std::size_t k = 0; k < 2; ++k) {
                 toCoords[i][k] = _toCoords[i][0] * sector.toCoords[0][k] +

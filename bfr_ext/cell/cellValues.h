@@ -35,6 +35,10 @@ public:
     /// Whether the surface is what its type makes of the points; of others, that of the children is.
     bool HasSurfaceOfType() const { return !_plain && !_isInner; }
     int GetNumChildren() const;
+    /// The shape of a whole cell; of size 0 of others.
+    FaceShape GetShape() const {
+        return _plain ? FaceShape(GetNumChildren() - 1) : _type->GetShape();
+    }
     int GetLevel() const { return _level; }
 
     /// Points of the patch's vertices, valid until the cell is set again.
@@ -64,8 +68,8 @@ private:
     int _length = 0;
     std::size_t _paddedSize = 0;
     int _numPoints = 0;
-    int _faceSize = 0; // of the base face
-    int _sector = 0;   // of a half cell
+    FaceShape _faceShape; // of the base face
+    int _sector = 0;      // of a half cell
     Pair _toCoords[2] =
         {}; // of a half cell: the derivatives of its coordinates by those of the sector
     std::vector<double> _points;

@@ -46,7 +46,8 @@ void FaceEvaluator<REAL>::evaluateSecond(TessellationData const &tessellation, R
     CellStencil stencil(*_face.type);
     std::ptrdiff_t result = 0;
     for (TessellationData::SectorCoords const &place : tessellation.places) {
-        BasePoint const point = MakeBasePoint(_face.size, place.sector, {place.start, place.end});
+        BasePoint const point =
+            MakeBasePoint(_face.type.GetShape(_face.size), place.sector, {place.start, place.end});
         stencil.Find(point, false);
         stencil.FindSecond(point);
         sumUp(stencil.GetDuuWeights(), results[3] + result);
@@ -194,7 +195,9 @@ void FaceEvaluator<REAL>::evaluateTree(TessellationData const &tessellation, REA
         if (!isDone[i]) {
             TessellationData::SectorCoords const &place = tessellation.places[i];
             CellStencil stencil(*_face.type);
-            stencil.Find(MakeBasePoint(_face.size, place.sector, {place.start, place.end}), true);
+            stencil.Find(MakeBasePoint(_face.type.GetShape(_face.size), place.sector,
+                                       {place.start, place.end}),
+                         true);
             std::ptrdiff_t const result = std::ptrdiff_t(i) * resultDesc.stride;
             sumUp(stencil.GetDuWeights(), results[1] + result);
             sumUp(stencil.GetDvWeights(), results[2] + result);
@@ -222,9 +225,8 @@ void FaceEvaluator<REAL>::evaluateBorder(TessellationData const &tessellation,
         int const level = tessellation.GetEdgeLevel(edge);
         if (level < 0) {
             for (int place = first + 1; place <= first + numPlaces; ++place) {
-                TessellationData::SectorCoords const &coords =
-                    tessellation.places[std::size_t(place)];
-                evaluator.EvaluateKeptPoint(edge, {coords.start, coords.end}, getResult(place));
+                evaluator.EvaluateKeptPoint(edge, tessellation.GetWeightsOnEdge(edge, place),
+                                            getResult(place));
             }
         } else if (numPlaces > 0) {
             evaluator.EvaluateEdge(edge, level, getResult(first + 1), resultDesc.stride);
@@ -251,9 +253,8 @@ void FaceEvaluator<REAL>::evaluateSectionBorder(TessellationData const &tessella
             }
             int const level = tessellation.GetEdgeLevel(edge);
             if (level < 0) {
-                TessellationData::SectorCoords const &coords =
-                    tessellation.places[std::size_t(place)];
-                evaluator.EvaluateKeptPoint(edge, {coords.start, coords.end}, result);
+                evaluator.EvaluateKeptPoint(edge, tessellation.GetWeightsOnEdge(edge, place),
+                                            result);
                 continue;
             }
             if (run.edge != evaluatedEdge) {

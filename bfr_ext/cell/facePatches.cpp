@@ -44,12 +44,15 @@ PatchAges limitAges(int steps, CornerAges ages) {
     return {std::min(steps, PatchSite::kMaxSteps), std::move(ages)};
 }
 
-// Calls function(child, ages of its corners) for the children of a cell that makes so many.
+// Calls function(child, ages of its corners) for the children of a cell that makes so many; \p shape is that of a whole
+// cell, or of size 0.
 template <typename FUNCTION>
-void forEachChild(bool isWhole, int numChildren, CornerAges const &ages, FUNCTION const &function) {
+void forEachChild(FaceShape shape, int numChildren, CornerAges const &ages,
+                  FUNCTION const &function) {
     function(0, CornerAges(ages.size(), 0));
+    int const firstEdge = shape.size == 0 ? 1 : shape.GetFirstSector();
     for (int child = 1; child < numChildren; ++child) {
-        function(child, findEdgeAges(ages, std::size_t(isWhole ? child - 1 : child)));
+        function(child, findEdgeAges(ages, std::size_t(child - 1 + firstEdge)));
     }
 }
 
@@ -67,14 +70,15 @@ std::vector<std::vector<double>> findRows(CellType const &type, int steps, Corne
         return rows;
     }
     std::vector<CellType::Child> const &children = type.GetChildren();
-    forEachChild(type.IsWhole(), int(children.size()), ages, [&](int i, CornerAges const &ofChild) {
-        CellType::Child const &child = children[std::size_t(i)];
-        for (std::vector<double> const &row :
-             findRows(*child.type, steps + 1, ofChild, numLevels - 1)) {
-            rows.emplace_back();
-            child.step.ApplyLeft(row, rows.back());
-        }
-    });
+    forEachChild(type.GetShape(), int(children.size()), ages,
+                 [&](int i, CornerAges const &ofChild) {
+                     CellType::Child const &child = children[std::size_t(i)];
+                     for (std::vector<double> const &row :
+                          findRows(*child.type, steps + 1, ofChild, numLevels - 1)) {
+                         rows.emplace_back();
+                         child.step.ApplyLeft(row, rows.back());
+                     }
+                 });
     return rows;
 }
 
@@ -164,10 +168,10 @@ public:
         : _cells(cells), _face(face), _level(level), _summer(summer) {}
 
     void Make(std::size_t cell, CornerAges const &ages) {
-        bool const isWhole = _cells[cell].GetLevel() == 0 || _cells[cell].GetType().IsWhole();
+        FaceShape const shape = _cells[cell].GetShape();
         int const numLevels = _level - _cells[cell].GetLevel();
-        if (!_summer.SkipUnlessWanted(isWhole ? GetNumFacePatches(_face, numLevels)
-                                              : getNumHalfPatches(numLevels))) {
+        if (!_summer.SkipUnlessWanted(shape.size > 0 ? GetNumFacePatches(_face, numLevels)
+                                                     : getNumHalfPatches(numLevels))) {
             return;
         }
         if (_cells[cell].GetLevel() == RefinedCells::kFirstCommonLevel) {
@@ -176,7 +180,7 @@ public:
         }
         std::size_t const first = _cells.GetFirstChild(cell);
         std::size_t const numCells = _cells.GetSize();
-        forEachChild(isWhole, _cells.GetNumChildren(cell), ages,
+        forEachChild(shape, _cells.GetNumChildren(cell), ages,
                      [&](int child, CornerAges const &ofChild) {
                          Make(first + std::size_t(child), ofChild);
                          _cells.Drop(numCells);
@@ -227,9 +231,16 @@ Quadrilateral findInKite(Pair const &coords, double m) {
 
 } // namespace
 
+namespace {
+
+FaceShape getShape(FaceCells const &face) { return {face.faceSize, face.isHalf}; }
+
+} // namespace
+
 int GetNumFacePatches(FaceCells const &face, int level) {
     // A sector has 1 + 4 + 16 ... half cells.
-    return face.GetNumPatches() + face.faceSize * (getNumHalfPatches(level) - 1) / 3;
+    return face.GetNumPatches() +
+           getShape(face).GetNumSectors() * (getNumHalfPatches(level) - 1) / 3;
 }
 
 namespace {
@@ -275,44 +286,41 @@ Quadrilateral findInKite(Pair const (&corners)[4], Pair const &place) {
     return in;
 }
 
-// From the coordinates in a sector of a face whose halves are kites: in the plane of a regular polygon around 0.
-Quadrilateral findInCutFace(FaceCells const &face, int sector, Pair const &coords, int &patch,
-                            Linear &linear) {
-    double const unit = 2 * FarExt::internal::kPi / face.faceSize;
-    auto const getVertex = [&](int i) { return Pair{std::cos(unit * i), std::sin(unit * i)}; };
-    Pair const start = getVertex(sector);
-    Pair const end = getVertex(sector + 1);
+// From the coordinates in the sector of a side of half a polygon that is made of kites: in its plane, where it has the
+// radius 1, and the middle of its first side is 0.
+Quadrilateral findInHalf(int numCorners, int side, Pair const &coords, int &kite, Linear &linear) {
+    double const unit = FarExt::internal::kPi / (numCorners - 1);
+    auto const getCorner = [&](int i) {
+        double const angle = unit * ((i + numCorners - 1) % numCorners);
+        return Pair{std::cos(angle), std::sin(angle)};
+    };
+    Pair const start = getCorner(side);
+    Pair const end = getCorner(side + 1);
     linear = {{{start[0], end[0]}, {start[1], end[1]}}};
     Pair const place = CellMap{{linear[0], linear[1]}, {0, 0}}.Apply(coords);
-    int const half = face.GetHalfOfEdge(sector);
-    int const size = face.GetNumCorners(half);
-    auto const getCorner = [&](int i) { return getVertex(face.GetLocal(half, i % size)); };
     auto const getMiddle = [](Pair const &p, Pair const &q) {
         return Pair{0.5 * (p[0] + q[0]), 0.5 * (p[1] + q[1])};
     };
-    // The diagonal is the first side.
     auto const getMiddleOfSide = [&](int i) {
-        return i % size == 0 ? Pair{0, 0} : getMiddle(getCorner(i), getCorner(i + 1));
+        return i % numCorners == 0 ? Pair{0, 0} : getMiddle(getCorner(i), getCorner(i + 1));
     };
-    Pair const across = getMiddle(getCorner((size + 1) / 2), getCorner(size / 2 + 1));
+    Pair const across = getMiddle(getCorner((numCorners + 1) / 2), getCorner(numCorners / 2 + 1));
     Pair const center = {across[0] / 3, across[1] / 3};
     auto const cross = [&](Pair const &to) {
         return (to[0] - center[0]) * (place[1] - center[1]) -
                (to[1] - center[1]) * (place[0] - center[0]);
     };
-    int kite = 0;
-    double best = -1;
-    for (int i = 0; i < size; ++i) {
+    double best = 0;
+    for (int i = 0; i < numCorners; ++i) {
         double const inside =
-            std::min(cross(getMiddleOfSide(i + size - 1)), -cross(getMiddleOfSide(i)));
+            std::min(cross(getMiddleOfSide(i + numCorners - 1)), -cross(getMiddleOfSide(i)));
         if (i == 0 || inside > best) {
             best = inside;
             kite = i;
         }
     }
-    patch = (half == 0 ? 0 : face.GetNumPatches(0)) + kite;
     Pair const corners[4] = {getCorner(kite), getMiddleOfSide(kite), center,
-                             getMiddleOfSide(kite + size - 1)};
+                             getMiddleOfSide(kite + numCorners - 1)};
     return findInKite(corners, place);
 }
 
@@ -321,23 +329,27 @@ Quadrilateral findInCutFace(FaceCells const &face, int sector, Pair const &coord
 Quadrilateral findInWhole(FaceCells const &face, int sector, Pair const &coords, int &patch,
                           Linear &linear) {
     int const size = face.faceSize;
-    if (face.IsCut() && face.HasKites(0)) {
-        return findInCutFace(face, sector, coords, patch, linear);
+    int const half = face.GetHalfOfEdge(sector);
+    if (face.AreHalves() && face.HasKites(half)) {
+        Quadrilateral const in =
+            findInHalf(face.GetNumCorners(half), face.GetSideOfEdge(sector), coords, patch, linear);
+        patch += face.IsCut() && half == 1 ? face.GetNumPatches(0) : 0;
+        return in;
     }
     auto const map = [&](Pair const &toStart, Pair const &toEnd, Pair const &center) {
         linear = {{{toStart[0], toEnd[0]}, {toStart[1], toEnd[1]}}};
         return CellMap{{linear[0], linear[1]}, center}.Apply(coords);
     };
-    if (size == 4) {
+    if (size == 4 && !face.isHalf) {
         constexpr Pair kCorners[4] = {{-0.5, -0.5}, {0.5, -0.5}, {0.5, 0.5}, {-0.5, 0.5}};
         Pair const st = map(kCorners[sector], kCorners[(sector + 1) % 4], {0.5, 0.5});
         return {st[0], st[1], {{1, 0}, {0, 1}}, {0, 0}};
     }
-    if (FarExt::HasHalves(size)) {
-        patch = FarExt::GetHalfOfEdge(sector);
+    if (face.AreHalves()) {
+        patch = half;
         // Of a half, whose long edge is the diagonal, from the centre of that on, around from its end.
         constexpr Pair kCorners[4] = {{0.5, 0}, {0.25, 0.5}, {-0.25, 0.5}, {-0.5, 0}};
-        int const local = sector % FarExt::kDiagonalEnd;
+        int const local = face.GetSideOfEdge(sector) - 1;
         return findInTrapezoid(map(kCorners[local], kCorners[local + 1], {0.5, 0}));
     }
     double const cosine = std::cos(FarExt::internal::kPi / size);
@@ -394,7 +406,8 @@ PatchPlace FindPatchPlace(BfrPlace const &ofFace, FaceCells const &face, int lev
     } else {
         --left;
         coords = HalfCell::kFromSector.Apply(coords);
-        place.patch = GetNumFacePatches(face, left) + sector * getNumHalfPatches(left);
+        place.patch = GetNumFacePatches(face, left) +
+                      (sector - getShape(face).GetFirstSector()) * getNumHalfPatches(left);
         int turn = 0;
         while (left > 0) {
             --left;

@@ -36,33 +36,38 @@ private:
     Counts _atEdge = {};    // with another side there
 };
 
-double FaceSections::CountLeaves(std::vector<int> const &levels) {
+double FaceSections::CountLeaves(FaceLevels const &faceLevels) {
+    auto const &[shape, levels] = faceLevels;
     int const level = levels.back();
     if (level == 0) {
         return 1;
     }
-    auto const numEdges = double(levels.size() - 1);
-    double count = 1 + numEdges * (std::ldexp(1.0, 2 * (level - 1)) - 1) / 3;
-    std::for_each(levels.begin(), levels.end() - 1,
-                  [&](int edgeLevel) { count += LeafCounts(edgeLevel, level).Get(1, 0); });
+    double count = 1 + shape.GetNumSectors() * (std::ldexp(1.0, 2 * (level - 1)) - 1) / 3;
+    for (int edge = shape.GetFirstSector(); edge < shape.size; ++edge) {
+        count += LeafCounts(faceLevels.levels[std::size_t(edge)], level).Get(1, 0);
+    }
     return count;
 }
 
-FaceSections::FaceSections(std::vector<int> const &levels, int maxLeaves)
-    : _levels(levels), _tree(nullptr), _cells(int(levels.size()) - 1) {
+FaceSections::FaceSections(FaceLevels const &faceLevels, int maxLeaves)
+    : _levels(faceLevels.levels), _tree(nullptr), _cells(faceLevels.shape) {
+    FaceShape const shape = faceLevels.shape;
+    std::vector<int> const &levels = _levels;
     int const level = levels.back();
     std::map<int, LeafCounts> counts;
-    std::for_each(levels.begin(), levels.end() - 1, [&](int edgeLevel) {
+    for (int edge = 0; edge < shape.size; ++edge) {
+        int const edgeLevel = levels[std::size_t(edge)];
         counts.emplace(edgeLevel, LeafCounts(edgeLevel, level));
-        if (_polylines.count(edgeLevel) == 0) {
-            _polylines.emplace(edgeLevel, Polyline(edgeLevel));
+        int const ofPolyline = GetEdgeLevel(shape, edge, edgeLevel);
+        if (_polylines.count(ofPolyline) == 0) {
+            _polylines.emplace(ofPolyline, Polyline(ofPolyline));
         }
-    });
+    }
     cut(maxLeaves, [&](int cell, int) {
         if (_cells.IsWhole(cell)) {
             int const left = level - _cells.GetLevel(cell);
-            return cell == 0 ? CountLeaves(levels)
-                             : 1 + GetFaceSize() * (std::ldexp(1.0, 2 * left) - 1) / 3;
+            return cell == 0 ? CountLeaves(faceLevels)
+                             : 1 + shape.GetNumSectors() * (std::ldexp(1.0, 2 * left) - 1) / 3;
         }
         return counts.at(levels[std::size_t(_cells.GetEdge(cell))])
             .Get(_cells.GetLevel(cell), _cells.GetBorderSide(cell));
@@ -70,7 +75,7 @@ FaceSections::FaceSections(std::vector<int> const &levels, int maxLeaves)
 }
 
 FaceSections::FaceSections(CellTree const &tree, std::vector<Polyline> edges, int maxLeaves)
-    : _tree(&tree), _edges(std::move(edges)), _cells(tree.GetFaceSize()) {
+    : _tree(&tree), _edges(std::move(edges)), _cells(tree.GetFaceShape()) {
     // No further than it has to be known.
     auto const count = [&](auto const &self, int cell, int most) -> int {
         int const first = tree.GetFirstChild(cell);
@@ -113,7 +118,7 @@ void FaceSections::cut(int maxLeaves, COUNT const &count) {
         }
         cells = std::move(children);
     }
-    std::vector<Polyline> edges(static_cast<std::size_t>(GetFaceSize()));
+    std::vector<Polyline> edges(static_cast<std::size_t>(GetFaceShape().size));
     for (std::size_t edge = 0; edge < edges.size(); ++edge) {
         edges[edge] = _cells.GetEdgePolyline(int(edge));
     }
@@ -121,15 +126,8 @@ void FaceSections::cut(int maxLeaves, COUNT const &count) {
 }
 
 bool FaceSections::isRefined(CellTree const &tree, int cell, int wholeCell) const {
-    if (_tree) {
-        return _tree->IsRefined(wholeCell);
-    }
-    // As CellTree refines cells of levels.
-    int const level = _levels.back();
-    int const last = tree.GetBorderSide(cell) == 0
-                         ? std::min(level, _levels[std::size_t(tree.GetEdge(cell))])
-                         : level;
-    return tree.GetLevel(cell) < last;
+    return _tree ? _tree->IsRefined(wholeCell)
+                 : tree.isToRefine(cell, _levels.data(), _levels.back());
 }
 
 int FaceSections::getWholeChild(int wholeCell, int child) const {
@@ -144,7 +142,7 @@ CellTree FaceSections::MakeTree(int section, CellShape *shape) const {
         path.push_back(cell - _cells.GetFirstChild(_parents[std::size_t(cell)]));
     }
     std::reverse(path.begin(), path.end());
-    CellTree tree(GetFaceSize());
+    CellTree tree(GetFaceShape());
     auto const visit = [&](auto const &self, CellShape const &cell, int wholeCell, bool hasSection,
                            bool isInside) -> void {
         bool const isSection = hasSection && std::size_t(cell.level) == path.size();
@@ -153,8 +151,8 @@ CellTree FaceSections::MakeTree(int section, CellShape *shape) const {
         }
         bool const isOther = !hasSection && !isInside;
         if (!isRefined(tree, cell.number, wholeCell) ||
-            (isOther && !(own.isWhole ? cell.Touches(GetFaceSize(), own)
-                                      : own.Touches(GetFaceSize(), cell)))) {
+            (isOther && !(own.isWhole ? cell.Touches(GetFaceShape(), own)
+                                      : own.Touches(GetFaceShape(), cell)))) {
             return;
         }
         tree.Refine(cell.number);
@@ -169,14 +167,17 @@ CellTree FaceSections::MakeTree(int section, CellShape *shape) const {
 }
 
 bool FaceSections::AreOnEdge(CellMesh::Vertex const &start, CellMesh::Vertex const &end) const {
-    return IsOnEdge(start) && IsOnEdge(end) &&
-           (end.sector == start.sector ||
-            (end.sector == (start.sector + 1) % GetFaceSize() && end.b == 0));
+    EdgePlace<int> const from = FindEdge(start);
+    EdgePlace<int> const to = FindEdge(end);
+    return from.edge >= 0 && to.edge >= 0 &&
+           (to.edge == from.edge ||
+            (to.edge == (from.edge + 1) % GetFaceShape().size && to.end == 0));
 }
 
-int FaceSections::CountPointsBefore(int edge, Polyline::Place place) const {
-    std::vector<Polyline::Place> const &places = GetEdge(edge).GetPlaces();
-    return int(std::lower_bound(places.begin(), places.end(), place) - places.begin());
+int FaceSections::CountPointsBefore(EdgePlace<int> const &place) const {
+    std::vector<Polyline::Place> const &places = GetEdge(place.edge).GetPlaces();
+    return int(std::lower_bound(places.begin(), places.end(), Polyline::Place(place.end)) -
+               places.begin());
 }
 
 } // namespace OpenSubdivHex::BfrExt::internal

@@ -4,11 +4,31 @@
 
 #include "cellMesh.h"
 
+#include <limits>
 #include <map>
 #include <memory>
 #include <vector>
 
 namespace OpenSubdivHex::BfrExt::internal {
+
+/// The levels of a face: those of its edges, then that of the inside.
+struct FaceLevels {
+    /// What tells them.
+    std::vector<int> GetKey() const {
+        std::vector<int> key = levels;
+        if (shape.isHalf) {
+            key.push_back(std::numeric_limits<int>::min());
+        }
+        return key;
+    }
+    friend bool operator==(FaceLevels const &a, FaceLevels const &b) {
+        return a.shape == b.shape && a.levels == b.levels;
+    }
+    friend bool operator!=(FaceLevels const &a, FaceLevels const &b) { return !(a == b); }
+
+    FaceShape shape;
+    std::vector<int> levels;
+};
 
 /// \brief A base face whose cells are too many to be made at once, cut into *sections*: cells with all
 /// that they are refined to, each of which is tessellated by itself.
@@ -18,9 +38,8 @@ namespace OpenSubdivHex::BfrExt::internal {
 /// edge of the face.
 class FaceSections {
 public:
-    /// \param levels     of the edges, then of the inside
     /// \param maxLeaves  cells of a section that are not refined, where it can be cut
-    FaceSections(std::vector<int> const &levels, int maxLeaves);
+    FaceSections(FaceLevels const &levels, int maxLeaves);
     /// \param tree   must live as long
     /// \param edges  by edge of the face, in its direction; with all points that the tree has there
     FaceSections(CellTree const &tree, std::vector<Polyline> edges, int maxLeaves);
@@ -28,17 +47,22 @@ public:
     FaceSections(FaceSections const &) = delete;
     FaceSections &operator=(FaceSections const &) = delete;
 
-    /// How many cells of levels are not refined.
-    static double CountLeaves(std::vector<int> const &levels);
+    /// How many cells of levels are not refined; of half a polygon as if its long edge had the level of the inside.
+    static double CountLeaves(FaceLevels const &levels);
 
-    int GetFaceSize() const { return _cells.GetFaceSize(); }
+    FaceShape GetFaceShape() const { return _cells.GetFaceShape(); }
     int GetNumSections() const { return int(_sections.size()); }
     /// Levels of edges, then of the inside; empty for a tree.
     std::vector<int> const &GetLevels() const { return _levels; }
     /// The points of an edge of the face.
     Polyline const &GetEdge(int edge) const {
-        return _levels.empty() ? _edges[std::size_t(edge)]
-                               : _polylines.at(_levels[std::size_t(edge)]);
+        return _levels.empty()
+                   ? _edges[std::size_t(edge)]
+                   : _polylines.at(GetEdgeLevel(GetFaceShape(), edge, _levels[std::size_t(edge)]));
+    }
+    /// The level of the polyline that an edge has where its cells have a level.
+    static int GetEdgeLevel(FaceShape shape, int edge, int level) {
+        return edge < shape.GetFirstSector() ? level + 1 : level;
     }
 
     /// The vertices of the sections.
@@ -53,19 +77,17 @@ public:
     /// \param shape  of the section in that tree
     CellTree MakeTree(int section, CellShape *shape) const;
 
-    /// Whether a vertex lies on an edge of the face, or is one of the face: on edge vertex.sector.
-    static bool IsOnEdge(CellMesh::Vertex const &vertex) {
-        return vertex.a + vertex.b == CellShape::kOne;
-    }
-    /// Where on that edge.
-    static Polyline::Place GetPlaceOnEdge(CellMesh::Vertex const &vertex) {
-        return Polyline::Place(vertex.b / (CellShape::kOne / Polyline::kLength));
+    /// The edge of the face that a vertex lies on, and where; of a vertex of the face that which begins there.
+    EdgePlace<int> FindEdge(CellMesh::Vertex const &vertex) const {
+        EdgePlace<std::int32_t> const found =
+            FindOnEdge(GetFaceShape(), vertex.GetPlace(), CellShape::kOne);
+        return {found.edge, found.end / (CellShape::kOne / Polyline::kLength)};
     }
     /// Whether the line from one vertex to the next of a polygon lies on an edge of the face: that of the
     /// first.
     bool AreOnEdge(CellMesh::Vertex const &start, CellMesh::Vertex const &end) const;
-    /// The points of an edge before a place.
-    int CountPointsBefore(int edge, Polyline::Place place) const;
+    /// The points of an edge before a place on it.
+    int CountPointsBefore(EdgePlace<int> const &place) const;
 
 private:
     class LeafCounts;

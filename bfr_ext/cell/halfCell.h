@@ -2,6 +2,8 @@
 #ifndef OPENSUBDIVHEX_BFR_EXT_CELL_HALF_CELL_H
 #define OPENSUBDIVHEX_BFR_EXT_CELL_HALF_CELL_H
 
+#include "sectors.h"
+
 #include "far_ext/vtr/basePolygon.h"
 
 #include <algorithm>
@@ -120,6 +122,25 @@ public:
     /// edge.
     static constexpr CellMap kFromSector = {{{-0.5, 0.5}, {-1, -1}}, {0.5, 1}};
 };
+
+/// The child of a cell that has one of its corners, in the order of RefineCell().
+struct CornerChild {
+    std::size_t child;
+    int corner; ///< which of the child's it is
+    CellMap const
+        *map; ///< from the cell's coordinates, of a whole cell those of GetSectorOfCorner()
+};
+/// \param shape  of a whole cell; of size 0: of half cells
+inline CornerChild FindCornerChild(FaceShape shape, int corner) {
+    if (shape.size == 0) {
+        int const child = HalfCell::kCornerChildren[corner];
+        return {std::size_t(child), HalfCell::kCornersOfChildren[corner],
+                &HalfCell::kChildren[child]};
+    }
+    int const sector = shape.GetSectorOfCorner(corner);
+    return {std::size_t(sector + 1 - shape.GetFirstSector()), sector == corner ? 0 : 1,
+            &HalfCell::kFromSector};
+}
 
 } // namespace OpenSubdivHex::BfrExt::internal
 

@@ -267,9 +267,8 @@ void PatchEvaluator<REAL>::evaluateLeaf(CellType const &type, RingCell const *ri
     auto const &matrices = getMatrices<REAL, 2>(
         PatternOf::LeafDerivatives, ofLeaf,
         [&](CellStencil &stencil, LeafPlaces::Place const &place) {
-            stencil.Find(type.IsWhole()
-                             ? MakeBasePoint(type.GetNumCorners(), place.sector, place.coords)
-                             : BasePoint{place.sector, place.coords, {{1, 0}, {0, 1}}},
+            stencil.Find(type.IsWhole() ? MakeBasePoint(type.GetShape(), place.sector, place.coords)
+                                        : BasePoint{place.sector, place.coords, {{1, 0}, {0, 1}}},
                          true);
         },
         [](CellStencil const &stencil, std::size_t i) -> std::vector<double> const & {

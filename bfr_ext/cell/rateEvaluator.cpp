@@ -46,14 +46,15 @@ void addToRuns(int row, int place, std::vector<PlaceRun> &runs) {
 
 // The points of a face in one of its children, and their numbers in the face, from the first one's on.
 std::vector<BfrPlace> selectPlaces(std::vector<BfrPlace> const &places, int first,
-                                   std::size_t child, int faceSize, std::vector<PlaceRun> &runs) {
+                                   std::size_t child, FaceShape shape,
+                                   std::vector<PlaceRun> &runs) {
     std::vector<BfrPlace> result;
     for (std::size_t i = 0; i < places.size(); ++i) {
         BasePoint const &point = places[i].point;
-        CellStep const step = FindCellStep(true, point.sector, point.coords);
+        CellStep const step = FindCellStep(shape, point.sector, point.coords);
         if (step.child == child) {
             addToRuns(int(result.size()), first + int(i), runs);
-            result.push_back(MoveToChild(places[i], step, faceSize));
+            result.push_back(MoveToChild(places[i], step, shape));
         }
     }
     return result;
@@ -78,14 +79,14 @@ BfrInnerPlaces::BfrInnerPlaces(Bfr::Tessellation const &tessellation)
     }
 }
 
-std::vector<BfrPlace> BfrInnerPlaces::Find(std::size_t begin, std::size_t end) {
+std::vector<BfrPlace> BfrInnerPlaces::Find(FaceShape shape, std::size_t begin, std::size_t end) {
     // Coordinates are sums of some ten thousand steps at most.
     constexpr double kTolerance = 1e-11;
     findCoords();
     std::vector<BfrPlace> places;
     for (std::size_t i = begin; i < end; ++i) {
         places.push_back(
-            FindBfrPlace(_tessellation.GetParameterization(), getCoord(i), kTolerance));
+            FindBfrPlace(_tessellation.GetParameterization(), shape, getCoord(i), kTolerance));
     }
     return places;
 }
@@ -191,6 +192,12 @@ int RateEvaluator<REAL>::getFaceKey() const {
     return kNumTypes * parameterization.GetFaceSize() + int(parameterization.GetType());
 }
 
+// Of the face: plain ones are no half polygons.
+template <typename REAL>
+FaceShape RateEvaluator<REAL>::getShape(Source const &source) const {
+    return source.cell ? FaceShape(_tessellation.GetFaceSize()) : source.type.GetShape();
+}
+
 template <typename REAL>
 void RateEvaluator<REAL>::evaluateInside(Source const &source, PatternOf of) {
     bool const areDerivatives = of == PatternOf::RateDerivatives;
@@ -200,8 +207,8 @@ void RateEvaluator<REAL>::evaluateInside(Source const &source, PatternOf of) {
                            _inner.GetRate(0), _inner.GetRate(1)},
         _inner.GetSize(),
         [&](std::size_t begin, std::size_t end) {
-            return makeInside(source, _inner.Find(begin, end), _tessellation.GetFaceSize(),
-                              areDerivatives);
+            FaceShape const shape = getShape(source);
+            return makeInside(source, _inner.Find(shape, begin, end), shape, areDerivatives);
         },
         [&](Matrices const &matrices, std::size_t begin) {
             sumUp(source, matrices, areDerivatives,
@@ -213,17 +220,17 @@ template <typename REAL>
 void RateEvaluator<REAL>::evaluateDerivativesOnEdge(Source const &source, int edge, int rate,
                                                     int first) const {
     Bfr::Parameterization const parameterization = _tessellation.GetParameterization();
-    int const size = parameterization.GetFaceSize();
+    FaceShape const shape = getShape(source);
     forEachBlock<Matrices>(
         source.GetPatterns(), PatternTable::GetKind<REAL>(PatternOf::RateDerivativesOnEdge),
         std::array<int, 3>{getFaceKey(), edge, rate}, std::size_t(rate),
         [&](std::size_t begin, std::size_t end) {
             std::vector<BfrPlace> places;
             for (auto i = int(begin); i < int(end); ++i) {
-                BfrPlace const place = MakeBfrEdgePlace(parameterization, edge, i, rate);
+                BfrPlace const place = MakeBfrEdgePlace(parameterization, shape, edge, i, rate);
                 places.push_back(
                     source.cell
-                        ? MoveToChild(place, FindCellStep(true, edge, place.point.coords), size)
+                        ? MoveToChild(place, FindCellStep(shape, edge, place.point.coords), shape)
                         : place);
             }
             return makeMatrices(source, places, true);
@@ -237,12 +244,12 @@ void RateEvaluator<REAL>::evaluateDerivativesOnEdge(Source const &source, int ed
 template <typename REAL>
 typename RateEvaluator<REAL>::Matrices
 RateEvaluator<REAL>::makeInside(Source const &source, std::vector<BfrPlace> const &places,
-                                int faceSize, bool hasDerivatives) {
+                                FaceShape shape, bool hasDerivatives) {
     if (!source.cell) {
         return makeMatrices(source, places, hasDerivatives);
     }
     std::vector<PlaceRun> runs;
-    std::vector<BfrPlace> const ofChild = selectPlaces(places, 0, source.child, faceSize, runs);
+    std::vector<BfrPlace> const ofChild = selectPlaces(places, 0, source.child, shape, runs);
     Matrices matrices = makeMatrices(source, ofChild, hasDerivatives);
     matrices.runs = std::move(runs);
     return matrices;

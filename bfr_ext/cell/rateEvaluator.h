@@ -21,7 +21,7 @@ public:
     /// it tells all of them.
     int GetRate(std::size_t direction) const { return _rates[direction]; }
     /// Places [begin, end).
-    std::vector<BfrPlace> Find(std::size_t begin, std::size_t end);
+    std::vector<BfrPlace> Find(FaceShape shape, std::size_t begin, std::size_t end);
 
 private:
     Pair getCoord(std::size_t place) const;
@@ -81,13 +81,14 @@ private:
     static Matrices makeMatrices(Source const &source, std::vector<BfrPlace> const &places,
                                  bool hasDerivatives);
     static Matrices makeInside(Source const &source, std::vector<BfrPlace> const &places,
-                               int faceSize, bool hasDerivatives);
+                               FaceShape shape, bool hasDerivatives);
     template <typename FUNCTION>
     void forEachEdge(FUNCTION const &function) const;
     void evaluateVertex(int edge, int first) const;
     void evaluateEdge(int edge, int rate, int first) const;
     // The kind of face, with its parameterization.
     int getFaceKey() const;
+    FaceShape getShape(Source const &source) const;
     void evaluateInside(Source const &source);
     void evaluateInside(Source const &source, PatternOf of);
     void evaluateDerivativesOnEdge(Source const &source, int edge, int rate, int first) const;

@@ -28,10 +28,9 @@ std::size_t RefinedCells::makeChildren(std::size_t cell) {
 CellValues const &RefinedCells::findCorner(std::size_t cell, int &corner) {
     while (!hasCommonType(cell)) {
         CellValues const &values = _cells[cell].values;
-        bool const isWhole = values.IsPlainBase() || values.GetType().IsWhole();
-        int const child = isWhole ? corner + 1 : HalfCell::kCornerChildren[corner];
-        corner = isWhole ? 0 : HalfCell::kCornersOfChildren[corner];
-        cell = GetFirstChild(cell) + std::size_t(child);
+        CornerChild const next = FindCornerChild(values.GetShape(), corner);
+        corner = next.corner;
+        cell = GetFirstChild(cell) + next.child;
     }
     return _cells[cell].values;
 }

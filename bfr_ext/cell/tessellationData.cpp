@@ -21,6 +21,9 @@ constexpr int kInvalid = OpenSubdiv::Far::INDEX_INVALID;
 // Others are mostly those of one face, so that what is made for them is not used again.
 constexpr int kMaxCellsOfPlan = 128;
 
+// Of the long edge of half a polygon.
+constexpr int kLastEdgeLevel = Polyline::kLastLevel + 1;
+
 // By edge, the level of which it has the polyline; -1: none.
 std::vector<int> findEdgeLevels(std::vector<Polyline> const &edges) {
     std::vector<int> levels;
@@ -28,11 +31,10 @@ std::vector<int> findEdgeLevels(std::vector<Polyline> const &edges) {
     for (Polyline const &edge : edges) {
         // Levels 0 and 1 give an edge the same.
         int level = 0;
-        while (level <= Polyline::kLastLevel &&
-               Polyline(level).GetNumPoints() < edge.GetNumPoints()) {
+        while (level <= kLastEdgeLevel && Polyline(level).GetNumPoints() < edge.GetNumPoints()) {
             ++level;
         }
-        levels.push_back(level <= Polyline::kLastLevel && Polyline(level) == edge ? level : -1);
+        levels.push_back(level <= kLastEdgeLevel && Polyline(level) == edge ? level : -1);
     }
     return levels;
 }
@@ -187,7 +189,7 @@ bool TessellationData::SetTree(CellTree const &cells, Polyline const edges[],
     if (!setOptions(options) || !hasAllPoints || areTooMany(2.0 * (cells.GetNumLeaves() - 1))) {
         return false;
     }
-    parameterization = Parameterization(cells.GetFaceSize());
+    parameterization = Parameterization(cells.GetFaceShape());
     CellMesh const mesh(cells, polylines.data());
     std::vector<int> edgeLevels = findEdgeLevels(polylines);
     tree = Tree{cells, std::move(polylines), std::move(edgeLevels), {}};
@@ -202,8 +204,8 @@ bool TessellationData::SetSection(FaceSections const &sections, int number,
     if (!setOptions(options)) {
         return false;
     }
-    int const size = sections.GetFaceSize();
-    parameterization = Parameterization(size);
+    int const size = sections.GetFaceShape().size;
+    parameterization = Parameterization(sections.GetFaceShape());
     section = Section{number, sections.GetNumSections(), {}};
     CellShape shape = {};
     CellTree cells = sections.MakeTree(number, &shape);
@@ -215,7 +217,8 @@ bool TessellationData::SetSection(FaceSections const &sections, int number,
         CellMesh::Vertex const &end =
             sections.GetVertices()[std::size_t(polygon[(i + 1) % polygon.size()])];
         if (sections.AreOnEdge(start, end)) {
-            edges[std::size_t(start.sector)] = sections.GetEdge(start.sector);
+            int const edge = sections.FindEdge(start).edge;
+            edges[std::size_t(edge)] = sections.GetEdge(edge);
         }
     }
     CellMesh const mesh(cells, edges.data(), shape);
@@ -265,13 +268,16 @@ bool TessellationData::SetLevels(Parameterization const &ofFace, int numLevels, 
         levels.push_back(numLevels > size ? ofEdges[size]
                                           : *std::max_element(ofEdges, ofEdges + size));
     }
-    if (areTooMany(2 * (FaceSections::CountLeaves(levels) - 1))) {
+    FaceShape const shape = GetFaceShape();
+    if (areTooMany(2 * (FaceSections::CountLeaves({shape, levels}) - 1))) {
         return false;
     }
     std::vector<Polyline> edges;
-    std::for_each(levels.begin(), levels.end() - 1, [&](int level) { edges.emplace_back(level); });
+    for (int edge = 0; edge < size; ++edge) {
+        edges.emplace_back(GetEdgeLevel(std::size_t(edge)));
+    }
     _cellPlans = std::make_unique<CellPlans>();
-    return setCells(CellMesh(CellTree(size, levels.data(), levels.back()), edges.data()));
+    return setCells(CellMesh(CellTree(shape, levels.data(), levels.back()), edges.data()));
 }
 
 // The highest of the places that a plan has.
@@ -301,7 +307,7 @@ CellPlan const &TessellationData::GetCellPlan(bool isInLattice, bool isOfDerivat
             leafPlaces.push_back({place.sector, {place.start, place.end}});
         }
         plan = std::make_unique<CellPlan const>(
-            GetFaceSize(), getLevelOfPlaces(isOfDerivatives), leafPlaces,
+            GetFaceShape(), getLevelOfPlaces(isOfDerivatives), leafPlaces,
             isOfDerivatives ? CellPlan::Use::Derivatives : CellPlan::Use::Points, isInLattice);
     });
     return *plan;
@@ -311,7 +317,7 @@ CellPlan const &TessellationData::GetCellPlan(bool isInLattice, bool isOfDerivat
 std::vector<int> TessellationData::setPlaces(CellMesh const &mesh, std::vector<int> const &order) {
     std::vector<CellMesh::Vertex> const &verts = mesh.GetVertices();
     std::vector<int> ofVertices(verts.size(), kInvalid);
-    FarExt::internal::BasePolygon const polygon(GetFaceSize());
+    FarExt::internal::BasePolygon const polygon(GetFaceShape());
     coords.resize(2 * order.size());
     places.reserve(order.size());
     for (std::size_t place = 0; place < order.size(); ++place) {
@@ -337,8 +343,8 @@ std::vector<BfrPlace> const &TessellationData::GetBfrPlaces() const {
     std::call_once(_onceBfrPlaces, [&] {
         _bfrPlaces.reserve(places.size());
         for (std::size_t i = 0; i < places.size(); ++i) {
-            _bfrPlaces.push_back(
-                FindBfrPlace(parameterization, {coords[2 * i], coords[2 * i + 1]}, 0));
+            _bfrPlaces.push_back(FindBfrPlace(parameterization, GetFaceShape(),
+                                              {coords[2 * i], coords[2 * i + 1]}, 0));
         }
     });
     return _bfrPlaces;
@@ -358,14 +364,13 @@ std::vector<TessellationData::CellCorner> TessellationData::FindCornersOfDerivat
         int const sector = places[place].sector;
         Pair inCell = {places[place].start, places[place].end};
         int cell = 0;
-        bool isWhole = true;
+        FaceShape shape = GetFaceShape(); // of size 0: of a half cell
         int corner = -1;
-        while ((corner = FindCellCorner(isWhole ? GetFaceSize() : 0, sector, inCell)) < 0 &&
-               cells.IsRefined(cell)) {
-            CellStep const step = FindCellStep(isWhole, sector, inCell);
+        while ((corner = FindCellCorner(shape, sector, inCell)) < 0 && cells.IsRefined(cell)) {
+            CellStep const step = FindCellStep(shape, sector, inCell);
             inCell = step.map->Apply(inCell); // without rounding
             cell = cells.GetFirstChild(cell) + int(step.child);
-            isWhole = step.isChildWhole;
+            shape = step.isChildWhole ? shape : FaceShape();
         }
         if (corner >= 0) {
             corners.push_back({cell, corner, int(place)});
@@ -413,20 +418,20 @@ bool TessellationData::setSectionCells(CellMesh const &mesh, FaceSections const 
         int const size = GetFaceSize();
         if (start.sector == end.sector) {
             mesh.AppendBetween(start.sector, {start.a, start.b}, {end.a, end.b}, order);
+        } else if (GetFaceShape().isHalf && start.a == 0 && end.sector == 1 && end.b == 0) {
+            mesh.AppendBetween(end.sector, {-start.b, 0}, {end.a, end.b}, order); // the long edge
         } else if (end.b == 0 && end.sector == (start.sector + 1) % size) {
             mesh.AppendBetween(start.sector, {start.a, start.b}, {0, end.a}, order);
         } else {
             mesh.AppendBetween(end.sector, {0, start.a}, {end.a, end.b}, order);
         }
-        if (!sections.IsOnEdge(start)) {
+        EdgePlace<int> const onEdge = sections.FindEdge(start);
+        if (onEdge.edge < 0) {
             continue;
         }
-        int const before =
-            start.b == 0
-                ? 0
-                : 1 + sections.CountPointsBefore(start.sector, sections.GetPlaceOnEdge(start));
+        int const before = onEdge.end == 0 ? 0 : 1 + sections.CountPointsBefore(onEdge);
         int const count = sections.AreOnEdge(start, end) ? int(order.size()) - first : 1;
-        section->border.push_back({start.sector, before - 1, count, first});
+        section->border.push_back({onEdge.edge, before - 1, count, first});
     }
     firstEdgeCoords.push_back(int(order.size()));
     std::vector<bool> isInside(mesh.GetVertices().size());
@@ -451,7 +456,14 @@ std::vector<double> TessellationData::findRegularCoords() const {
     std::vector<double> result;
     result.reserve(coords.size());
     double const unit = 2 * FarExt::internal::kPi / GetFaceSize();
+    FarExt::internal::BasePolygon const polygon(GetFaceShape());
     for (SectorCoords const &place : places) {
+        if (GetFaceShape().isHalf) {
+            Pair uv;
+            polygon.Write(place.sector, {place.start, place.end}, uv.data());
+            result.insert(result.end(), uv.begin(), uv.end());
+            continue;
+        }
         double const start = unit * place.sector;
         double const end = unit * (place.sector + 1);
         result.push_back(place.start * std::cos(start) + place.end * std::cos(end));

@@ -66,6 +66,7 @@ public:
                     LevelTessellation::Options const &options);
     /// @}
 
+    FaceShape GetFaceShape() const { return parameterization.GetFaceShape(); }
     int GetFaceSize() const { return parameterization.GetFaceSize(); }
     int GetNumCoords() const { return int(places.size()); }
     int GetNumBoundaryCoords() const {
@@ -73,7 +74,18 @@ public:
     }
     /// That of which an edge has the polyline; -1: none.
     int GetEdgeLevel(std::size_t edge) const {
-        return tree ? tree->edgeLevels[edge] : levels[edge];
+        return tree ? tree->edgeLevels[edge]
+                    : FaceSections::GetEdgeLevel(GetFaceShape(), int(edge), levels[edge]);
+    }
+    /// What the start and the end of an edge weigh at a place on it; that may be the edge's last.
+    Pair GetWeightsOnEdge(std::size_t edge, int place) const {
+        SectorCoords const &weights = places[std::size_t(place)];
+        if (int(edge) >= GetFaceShape().GetFirstSector()) {
+            return {weights.start, weights.end};
+        }
+        SectorPlace<Pair> const inSector = {weights.sector, {weights.start, weights.end}};
+        double const end = FindOnEdge(GetFaceShape(), inSector, 1.0).end;
+        return {1 - end, end};
     }
 
     /// Whether there are plans: not of a large tree, nor of its sections.

@@ -32,9 +32,9 @@ struct PlanOptions {
 /// \brief Shared by patches with the same levels, or the same tree: their tessellation, with the
 /// cells its places lie in.
 struct PatchPlan {
-    PatchPlan(std::vector<int> const &levels, PlanOptions const &options)
-        : tessellation(Parameterization(int(levels.size()) - 1), int(levels.size()), levels.data(),
-                       options.tessellation) {}
+    PatchPlan(FaceLevels const &ofFace, PlanOptions const &options)
+        : tessellation(Parameterization(ofFace.shape), int(ofFace.levels.size()),
+                       ofFace.levels.data(), options.tessellation) {}
     PatchPlan(FaceSections const &sections, int section, PlanOptions const &options)
         : tessellation(sections, section, options.tessellation) {}
     explicit PatchPlan(LevelTessellation ofFace) : tessellation(std::move(ofFace)) {}
@@ -43,7 +43,8 @@ struct PatchPlan {
     ///
     /// The cells in which the levels of edges take part are counted as if they had that of the inside;
     /// derivatives on an edge follow cells that are there for one or two of its points alone.
-    static std::size_t GetSizeOfMaking(std::vector<int> const &levels, bool hasDerivatives) {
+    static std::size_t GetSizeOfMaking(FaceLevels const &ofFace, bool hasDerivatives) {
+        std::vector<int> const &levels = ofFace.levels;
         std::size_t const bytes = GetBytesOfPlace(hasDerivatives);
         std::size_t const bytesOnEdge = bytes + (hasDerivatives ? 700 : 0);
         std::size_t const numCells = (std::size_t(1) << (2 * levels.back())) / 3;
@@ -80,7 +81,7 @@ public:
     PlanOptions const &GetOptions() const { return _options; }
     std::size_t GetMaxMemory() const { return _maxMemory; }
     /// PatchPlan::GetSizeOfMaking().
-    std::size_t GetSizeOfMaking(std::vector<int> const &levels) const {
+    std::size_t GetSizeOfMaking(FaceLevels const &levels) const {
         return PatchPlan::GetSizeOfMaking(levels, _options.hasDerivatives);
     }
 
@@ -89,7 +90,7 @@ public:
         return numLeaves > kMaxLeavesOfFace && size > double(_maxMemory) / 4;
     }
     /// Overload for a face with levels.
-    bool IsCut(std::vector<int> const &levels) const {
+    bool IsCut(FaceLevels const &levels) const {
         return IsCut(double(GetSizeOfMaking(levels)), FaceSections::CountLeaves(levels));
     }
     /// Overload for a face with a tree.
@@ -108,8 +109,8 @@ public:
     /// \brief Finds the plan of some levels, or makes it.
     ///
     /// Threads that want a plan wait for it, since it takes memory to make one.
-    std::shared_ptr<PatchPlan const> Find(std::vector<int> const &levels) {
-        return find(levels, GetSizeOfMaking(levels),
+    std::shared_ptr<PatchPlan const> Find(FaceLevels const &levels) {
+        return find(levels.GetKey(), GetSizeOfMaking(levels),
                     [&] { return std::make_shared<PatchPlan const>(levels, _options); });
     }
     /// \brief The plan of a tree, whose tessellation makeTessellation() makes if there is none.
@@ -141,7 +142,7 @@ public:
     static bool IsShared(CellTree const &tree) { return tree.GetNumCells() <= kMaxCellsOfShared; }
     /// The plan of a section.
     std::shared_ptr<PatchPlan const> Find(FaceSections const &sections, int section) {
-        std::vector<int> key = sections.GetLevels();
+        std::vector<int> key = FaceLevels{sections.GetFaceShape(), sections.GetLevels()}.GetKey();
         key.push_back(-1 - section);
         std::size_t const bytes = PatchPlan::GetBytesOfPlace(_options.hasDerivatives);
         return find(key, std::size_t(GetMaxLeaves()) * bytes,
@@ -275,26 +276,26 @@ public:
     public:
         explicit Counter(PlanMemory &memory) : _memory(memory) {}
 
-        void Add(std::vector<int> const &levels) {
+        void Add(FaceLevels const &levels) {
             if (levels == _last || !_memory.HasRoom()) {
                 return;
             }
             _last = levels;
-            if (_known.insert(levels).second) {
+            if (_known.insert(levels.GetKey()).second) {
                 _memory.add(levels);
             }
         }
 
     private:
         PlanMemory &_memory;
-        std::vector<int> _last;
+        FaceLevels _last;
         std::set<std::vector<int>> _known;
     };
 
 private:
-    void add(std::vector<int> const &levels) {
+    void add(FaceLevels const &levels) {
         std::lock_guard<std::mutex> const lock(_mutex);
-        if (_known.insert(levels).second) {
+        if (_known.insert(levels.GetKey()).second) {
             _memory += _plans.GetSizeOfMaking(levels);
             if (_memory > _plans.GetMaxMemory() || _plans.IsCut(levels)) {
                 _hasRoom = false;

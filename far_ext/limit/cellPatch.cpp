@@ -72,7 +72,7 @@ int findSide(Level const &level, Index vert, Index face, int half) {
 } // namespace
 
 void GatherBaseCell(Level const &level, Index face, Sdc::Options sdcOptions, CellPatch &cell) {
-    cell.kind = CellKind::Whole;
+    cell.kind = level.IsHalfFace(face) ? CellKind::HalfPolygon : CellKind::Whole;
     cell.locals.resize(std::size_t(level.GetFaceSize(face)));
     std::iota(cell.locals.begin(), cell.locals.end(), 0);
     LimitPatchGatherer gatherer(level, sdcOptions, kMaskOfBase);
@@ -147,7 +147,8 @@ std::vector<CellPatch> GatherBorder(CellPatch const &baseCell, int const *turns,
     for (int i = 0; i < size; ++i) {
         Index const edge = level.faceEdges[i];
         int const side = isFirstSide(level, 0, i) == (turns[i] == 1) ? 1 : 0;
-        border.push_back({CellKind::Edge, {}, {}, {}});
+        border.push_back(
+            {level.IsSharpBoundaryB(edge) ? CellKind::LongEdge : CellKind::Edge, {}, {}, {}});
         gatherEdge(gatherer, level, edge, side, border.back());
     }
     for (int i = 0; i < size; ++i) {
@@ -195,6 +196,7 @@ public:
             addFFace();
             addHalves(0);
             break;
+        case CellKind::HalfPolygon:
         case CellKind::Half:
             addFFace();
             addHalves(1); // the long edge makes none

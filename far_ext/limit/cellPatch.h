@@ -19,11 +19,12 @@ inline constexpr int kNumHalfCellCorners = HexIndexing::kNumBoundaryEFaceCorners
 
 /// Kinds of cells, and of what is shared by those that meet.
 enum class CellKind {
-    Whole,    ///< a base face, or the F-face that comes of it step by step
-    Half,     ///< half of a hexagon, or a half face
-    Edge,     ///< an edge that runs along an edge of level 0
-    LongEdge, ///< the same across a hexagon, or along a half face
-    Vertex    ///< a vertex of level 0, or its V-vertex
+    Whole,       ///< a base face, or the F-face that comes of it step by step
+    HalfPolygon, ///< the same, where the base face is a half face
+    Half,        ///< half of a hexagon, or a half face, of four corners, that an edge made
+    Edge,        ///< an edge that runs along an edge of level 0
+    LongEdge,    ///< the same across a hexagon, or along a half face
+    Vertex       ///< a vertex of level 0, or its V-vertex
 };
 
 /// \brief A cell, with the patch that all of the surface in it depends on.
@@ -78,7 +79,7 @@ struct CellRefinement {
 
 /// \brief The cells that a step makes of a cell: first the F-face, or the same half of it, then the
 /// half cells on this side of the edges, which are those behind corner 0 and so on of a whole cell
-/// and behind corners 1 to 3 of a half cell.
+/// and behind corner 1 and so on of a half cell and of a half polygon.
 ///
 /// Of an edge it is the long edge from end to end; of a long edge the edge from its start, the long
 /// edge in its middle and the edge from its end; of a vertex it is the V-vertex.

@@ -26,8 +26,7 @@ std::vector<CornerWeights> findPatchCorners(CellPatch const &cell) {
             corners.back()[std::size_t(corner)] += 1 / double(ofCell.size());
         }
     };
-    FaceCells const cells =
-        cell.kind == CellKind::Half ? FaceCells{numCorners, 0} : FindCellsOfBaseCell(cell);
+    FaceCells const cells = FindCellsOfCell(cell);
     for (int half = 0; half < (cells.IsCut() ? 2 : 1); ++half) {
         int const size = cells.GetNumCorners(half);
         std::vector<int> ofCell;
@@ -84,12 +83,15 @@ void findBilinearPoints(CellPatch const &cell, std::vector<double> &rows) {
 
 } // namespace
 
-FaceCells FindCellsOfBaseCell(CellPatch const &cell) {
+FaceCells FindCellsOfCell(CellPatch const &cell) {
     LimitPatch const &patch = cell.patch;
     int const size = cell.GetNumCorners();
+    if (cell.kind != CellKind::Whole) {
+        return {size, 0, true};
+    }
     bool const isCrossed = !patch.crossedFaces.empty() && patch.crossedFaces.front().face == 0 &&
                            Sdc::Crease::IsInfinite(patch.diagonalSharpness.front());
-    return isCrossed ? FaceCells{size, patch.crossedFaces.front().end} : MakeFaceCells(size);
+    return isCrossed ? FaceCells{size, patch.crossedFaces.front().end, false} : MakeFaceCells(size);
 }
 
 CallStatus FindCellPatchPoints(CellPatch const &cell, Sdc::Options sdcOptions,

@@ -10,8 +10,8 @@
 
 namespace OpenSubdivHex::FarExt::internal {
 
-/// The cells that the face of a whole cell is for its patches.
-OPENSUBDIVHEX_API FaceCells FindCellsOfBaseCell(CellPatch const &cell);
+/// The cells that a whole cell, a half polygon or a half cell is for its patches.
+OPENSUBDIVHEX_API FaceCells FindCellsOfCell(CellPatch const &cell);
 
 /// \brief Finds the points of the patches of a whole or half cell as sums of the vertices of its patch.
 ///

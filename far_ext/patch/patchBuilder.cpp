@@ -159,7 +159,7 @@ private:
     // Sides of the polygon that a half cell is half of, or of another cell.
     int getNumSidesOfPolygon(PatchCell const &cell) const {
         int const numCorners = getNumCorners(cell);
-        return IsHalfCell(_level, cell) ? 2 * (numCorners - 1) : numCorners;
+        return getCells(cell.face).AreHalves() ? 2 * (numCorners - 1) : numCorners;
     }
     // The place in the face of a cell's corner.
     int getLocal(Index face, int half, int corner) const {
@@ -807,7 +807,7 @@ void PatchBuilder::LevelBuilder::addSides(CellSide const *sides, int numSides, b
 
 void PatchBuilder::LevelBuilder::addKites(PatchCell const &cell) {
     int const size = getNumCorners(cell);
-    bool const isHalf = IsHalfCell(_level, cell);
+    bool const isHalf = getCells(cell.face).AreHalves();
     Index const rowOfCenter =
         isHalf ? addHalfCenter(cell) : addCenterRow({CenterRow::kCenter, cell.face, 0});
     SpokeShape const spoke = getSpoke(cell);

@@ -48,11 +48,13 @@ std::vector<unsigned char> makeChildren(Refinement const &refinement,
 
 FaceCells FindFaceCells(Level const &level, Index face) {
     int const size = level.GetFaceSize(face);
-    if (CrossedFace const *const crossed = level.FindCrossedFace(face);
-        crossed && Sdc::Crease::IsInfinite(level.GetDiagonalSharpness(face))) {
-        return {size, crossed->end};
+    if (level.IsHalfFace(face)) {
+        return {size, 0, true};
     }
-    return MakeFaceCells(size);
+    CrossedFace const *const crossed = level.FindCrossedFace(face);
+    return crossed && Sdc::Crease::IsInfinite(level.GetDiagonalSharpness(face))
+               ? FaceCells{size, crossed->end, false}
+               : MakeFaceCells(size);
 }
 
 PatchCells::PatchCells(MeshLevels const &mesh, int level) : _firstLevel(level) {

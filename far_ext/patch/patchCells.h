@@ -21,6 +21,8 @@ struct PatchCell {
 /// In the plane of a face a diagonal runs through its centre.
 struct FaceCells {
     bool IsCut() const { return diagonalEnd > 0; }
+    /// Whether cells are halves of regular polygons with the first side across.
+    bool AreHalves() const { return IsCut() || isHalf; }
     /// Of a cell.
     int GetNumCorners(int half) const {
         return IsCut() ? GetHalfSize(half, faceSize, diagonalEnd) : faceSize;
@@ -49,18 +51,15 @@ struct FaceCells {
 
     int faceSize;
     int diagonalEnd; ///< the vertex where the diagonal between the halves ends; 0: there is none
+    bool isHalf;     ///< a half face
 };
 
 /// Those of a face without a sharp diagonal.
 constexpr FaceCells MakeFaceCells(int faceSize) {
-    return {faceSize, HasHalves(faceSize) ? kDiagonalEnd : 0};
+    return {faceSize, HasHalves(faceSize) ? kDiagonalEnd : 0, false};
 }
 /// Those of a face.
 FaceCells FindFaceCells(Level const &level, Far::Index face);
-/// Whether a cell is half of a regular polygon with its first side across.
-inline bool IsHalfCell(Level const &level, PatchCell const &cell) {
-    return FindFaceCells(level, cell.face).IsCut() || level.IsHalfFace(cell.face);
-}
 
 /// \brief Which cells of which levels are patches: together they are all of the surface but its holes.
 ///

@@ -62,9 +62,9 @@ VaryingPoints::VaryingPoints(TopologyRefiner const &refiner, int channel, PatchC
             std::size_t const across = size / 2 + 1;
             std::size_t const beforeAcross = (size + 1) / 2;
             Index const center = addPoint(
-                IsHalfCell(level, cell) ? std::vector<Index>{verts[0], verts[0], verts[1], verts[1],
-                                                             verts[beforeAcross], verts[across]}
-                                        : verts);
+                faceCells.AreHalves() ? std::vector<Index>{verts[0], verts[0], verts[1], verts[1],
+                                                           verts[beforeAcross], verts[across]}
+                                      : verts);
             auto const getMiddle = [&](std::size_t i) {
                 // Diagonals behind edges.
                 Index const edge = faceCells.IsCut() && i == 0

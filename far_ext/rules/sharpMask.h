@@ -66,9 +66,7 @@ inline constexpr double kTruncateAlongCrease = 1.0 / 9;
 /// Of each neighbor along the line, for what the mean of the centroids around V would bring on both sides of it:
 /// (V_l + V_r - 2 V)/6.
 inline constexpr double kTruncateAround = 1.0 / 6;
-/// The faces on each side of a vertex that any line passes: half its polygon is half a hexagon then.
-inline constexpr int kNumPassedFaces = 3;
-/// The most faces on a side of a vertex that a crease passes: masks of its polygon have as many rows.
+/// The most faces on a side of a line where it passes through the polygon of a vertex, whose masks have as many rows.
 inline constexpr int kMaxPassedFaces = 64;
 /// @}
 

@@ -85,18 +85,6 @@ bool areHexagonal(MeshLevels const &mesh, int baseDepth, int depth) {
     return depth >= baseDepth;
 }
 
-// The same point as seen from the centre of the polygon.
-SectorPoint changeCenter(BasePolygon const &from, BasePolygon const &to, SectorPoint point,
-                         int &sector) {
-    if (point.a + point.b == 1) {
-        return point; // on the edge, without rounding
-    }
-    BasePolygon::Pair place;
-    from.Write(sector, point, place.data());
-    BasePolygon::Pair const &center = to.GetCenter();
-    return to.FindSectorPoint({place[0] - center[0], place[1] - center[1]}, sector);
-}
-
 } // namespace
 
 Index FindBaseFace(MeshLevels const &mesh, int baseDepth, int depth, Cell cell) {
@@ -116,28 +104,26 @@ bool FindBaseCoords(MeshLevels const &mesh, int baseDepth, int depth, Cell cell,
         return false;
     }
     PlacedCell const placed = place(mesh, baseDepth, depth, cell);
-    Level const &base = mesh.levels[std::size_t(baseDepth)];
-    int const size = base.GetFaceSize(placed.baseFace);
-    bool const isHalf = base.IsHalfFace(placed.baseFace);
-    BasePolygon const polygon(size, isHalf);
-    BasePolygon const regular(size);
+    FaceShape const shape = GetFaceShape(mesh.levels[std::size_t(baseDepth)], placed.baseFace);
+    int const size = shape.size;
+    BasePolygon const polygon(shape);
     auto const parameterization = MakeFaceParameterization(size);
     auto const writePoint = [&](int sector, SectorPoint point, REAL *at) {
         if (coordsOf == CoordsOf::Plane) {
             polygon.Write(sector, point, at);
         } else {
-            if (isHalf) {
-                point = changeCenter(polygon, regular, point, sector);
-            }
             BasePolygon::Pair const coords =
-                FindFaceCoords(parameterization, regular, sector, point);
+                FindFaceCoords(parameterization, polygon, sector, point);
             at[0] = REAL(coords[0]);
             at[1] = REAL(coords[1]);
         }
     };
     if (placed.sector < 0) {
         for (int i = 0; i < size; ++i) {
-            writePoint(i, {placed.scale, 0}, uv + 2 * i);
+            bool const isAtEnd = shape.GetSectorOfCorner(i) != i;
+            writePoint(shape.GetSectorOfCorner(i),
+                       isAtEnd ? SectorPoint{0, placed.scale} : SectorPoint{placed.scale, 0},
+                       uv + 2 * i);
         }
         return true;
     }

@@ -4,7 +4,14 @@
 
 #include "hierarchy.h"
 
+#include "far_ext/faceShape.h"
+
 namespace OpenSubdivHex::FarExt::internal {
+
+/// The shape of a face that has a surface, of a level with full topology.
+inline FaceShape GetFaceShape(Level const &level, Far::Index face) {
+    return {level.GetFaceSize(face), level.IsHalfFace(face)};
+}
 
 /// Kinds of coordinates in a face.
 enum class CoordsOf {

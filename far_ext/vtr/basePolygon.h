@@ -4,6 +4,8 @@
 
 #include "pi.h"
 
+#include "far_ext/faceShape.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -19,41 +21,27 @@ struct SectorPoint {
 };
 
 /// \brief A base face in its plane, counter-clockwise, edge 0 from (0, 0) to (1, 0): a triangle has its third corner
-/// at (0, 1), a quad is the unit square, others are regular polygons.
-///
-/// Its *centre*, from which sectors are seen, is that of the polygon; that of a half face is the middle of its edge 0, whose
-/// sector is empty.
+/// at (0, 1), a quad is the unit square, others are regular polygons.  Half a polygon differs in its centre alone.
 class BasePolygon {
 public:
     using Pair = std::array<double, 2>;
 
-    explicit BasePolygon(int size, bool isHalf = false)
-        : _size(size), _radius(0.5 / std::sin(kPi / size)), _isHalf(isHalf),
-          _center(size == 3   ? Pair{kThird, kThird}
-                  : size == 4 ? Pair{0.5, 0.5}
-                              : Pair{0.5, 0.5 / std::tan(kPi / size)}) {
-        if (isHalf) {
-            Pair const start = getRegularCorner(0);
-            Pair const end = getRegularCorner(1);
-            for (std::size_t i = 0; i < 2; ++i) {
-                _moved[i] = 0.5 * (start[i] + end[i]);
-                _center[i] += _moved[i];
-            }
-        }
-    }
+    explicit BasePolygon(FaceShape shape)
+        : _shape(shape), _size(shape.size), _radius(0.5 / std::sin(kPi / shape.size)),
+          _regularCenter(shape.size == 3   ? Pair{kThird, kThird}
+                         : shape.size == 4 ? Pair{0.5, 0.5}
+                                           : Pair{0.5, 0.5 / std::tan(kPi / shape.size)}),
+          _center(shape.isHalf ? Pair{0.5, 0} : _regularCenter) {}
 
+    FaceShape GetShape() const { return _shape; }
     int GetSize() const { return _size; }
 
     template <typename REAL>
     void Write(int sector, SectorPoint point, REAL *uv) const {
-        if (_size == 3) {
+        if (_size == 3 && !_shape.isHalf) {
             // Without rounding on the border.
-            double const ofCenter = 1 - point.a - point.b;
-            double weights[3] = {ofCenter * kThird, ofCenter * kThird, ofCenter * kThird};
-            if (_isHalf) {
-                weights[0] = weights[1] = 0.5 * ofCenter;
-                weights[2] = 0;
-            }
+            double const ofAll = (1 - point.a - point.b) * kThird;
+            double weights[3] = {ofAll, ofAll, ofAll};
             weights[sector] += point.a;
             weights[(sector + 1) % 3] += point.b;
             uv[0] = REAL(weights[1]);
@@ -77,41 +65,43 @@ public:
                 Pair{-start[1] / determinant, start[0] / determinant}};
     }
 
-    /// The sector that has a place, which is relative to the centre, or is nearest; and where it is there.
-    SectorPoint FindSectorPoint(Pair const &place, int &sector) const {
-        auto const cross = [](Pair const &a, Pair const &b) { return a[0] * b[1] - a[1] * b[0]; };
+    /// Corner number i, from the centre.
+    Pair GetCorner(int i) const {
+        if (_shape.isHalf) {
+            Pair const corner = getRegularCorner(i);
+            return _size == 3 ? Pair{i == 1 ? 0.5 : -0.5, i == 2 ? 1.0 : 0.0}
+                              : Pair{corner[0], corner[1] + _regularCenter[1]};
+        }
+        return getRegularCorner(i);
+    }
+
+    /// The sector that has a point of the plane, or is nearest to it, and the point there.
+    SectorPoint FindSector(Pair const &point, int &sector) const {
+        double const x = point[0] - _center[0];
+        double const y = point[1] - _center[1];
         SectorPoint best;
-        int const first = _isHalf ? 1 : 0;
-        for (int i = first; i < _size; ++i) {
+        for (int i = _shape.GetFirstSector(); i < _size; ++i) {
             Pair const start = GetCorner(i);
             Pair const end = GetCorner((i + 1) % _size);
-            double const determinant = cross(start, end);
-            SectorPoint const point = {cross(place, end) / determinant,
-                                       cross(start, place) / determinant};
-            if (i == first || std::min(point.a, point.b) > std::min(best.a, best.b)) {
-                best = point;
+            double const determinant = start[0] * end[1] - start[1] * end[0];
+            SectorPoint const found = {(x * end[1] - y * end[0]) / determinant,
+                                       (start[0] * y - start[1] * x) / determinant};
+            if (i == _shape.GetFirstSector() ||
+                std::min(found.a, found.b) > std::min(best.a, best.b)) {
+                best = found;
                 sector = i;
             }
         }
         return best;
     }
 
-    /// Corner number i, from the centre.
-    Pair GetCorner(int i) const {
-        Pair const corner = getRegularCorner(i);
-        return _isHalf ? Pair{corner[0] - _moved[0], corner[1] - _moved[1]} : corner;
-    }
-
 private:
-    static constexpr double kThird = 1.0 / 3;
-
-    // From the centre of the polygon.
     Pair getRegularCorner(int i) const {
         if (_size == 3) {
             return {i == 1 ? 2 * kThird : -kThird, i == 2 ? 2 * kThird : -kThird};
         }
         if (i <= 1) {
-            return {i - 0.5, _size == 4 ? -0.5 : -0.5 / std::tan(kPi / _size)};
+            return {i - 0.5, -_regularCenter[1]};
         }
         if (_size == 4) {
             return {i == 2 ? 0.5 : -0.5, 0.5};
@@ -120,11 +110,13 @@ private:
         return {_radius * std::cos(angle), _radius * std::sin(angle)};
     }
 
+    static constexpr double kThird = 1.0 / 3;
+
+    FaceShape const _shape;
     int const _size;
     double const _radius;
-    bool const _isHalf;
-    Pair _center;
-    Pair _moved = {0, 0}; // from the centre of the polygon
+    Pair const _regularCenter;
+    Pair const _center;
 };
 
 /// What a BasePolygon of a common size says, found once: places are found in it by the million.
@@ -132,12 +124,14 @@ class KnownPolygon {
 public:
     using Pair = BasePolygon::Pair;
 
-    /// That of \p size vertices; null where this is not common.
-    static KnownPolygon const *Find(int size) {
+    /// That of a shape; null where this is not common.
+    static KnownPolygon const *Find(FaceShape shape) {
+        int const size = shape.size;
         static KnownPolygon const kAll[] = {KnownPolygon(kMinSize), KnownPolygon(4),
                                             KnownPolygon(5),        KnownPolygon(6),
                                             KnownPolygon(7),        KnownPolygon(kMaxSize)};
-        return kMinSize <= size && size <= kMaxSize ? &kAll[size - kMinSize] : nullptr;
+        bool const isKnown = kMinSize <= size && size <= kMaxSize && !shape.isHalf;
+        return isKnown ? &kAll[size - kMinSize] : nullptr;
     }
 
     Pair const &GetCenter() const { return _center; }
@@ -160,11 +154,11 @@ private:
     std::array<Pair, 2> _sectorMaps[kMaxSize] = {};
 };
 
-/// Calls function(polygon) with the KnownPolygon of a size, or else with its BasePolygon.
+/// Calls function(polygon) with the KnownPolygon of a shape, or else with its BasePolygon.
 template <typename FUNCTION>
-auto UsePolygon(int size, FUNCTION const &function) {
-    KnownPolygon const *const known = KnownPolygon::Find(size);
-    return known ? function(*known) : function(BasePolygon(size));
+auto UsePolygon(FaceShape shape, FUNCTION const &function) {
+    KnownPolygon const *const known = KnownPolygon::Find(shape);
+    return known ? function(*known) : function(BasePolygon(shape));
 }
 
 } // namespace OpenSubdivHex::FarExt::internal

@@ -63,6 +63,13 @@ Pair FindFaceCoords(Bfr::Parameterization const &parameterization, BasePolygon c
         polygon.Write(sector, point, uv.data());
         return uv;
     }
+    if (polygon.GetShape().isHalf) {
+        Pair coords;
+        polygon.Write(sector, point, coords.data());
+        BasePolygon const whole(size);
+        SectorPoint const inWhole = whole.FindSector(coords, sector);
+        return FindFaceCoords(parameterization, whole, sector, inWhole);
+    }
     auto const [a, b] = point;
     Pair found;
     if (a == 0 && b == 0) {

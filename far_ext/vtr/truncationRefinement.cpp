@@ -72,6 +72,9 @@ private:
     void setCut(Index corner, bool isEndCut) {
         _cuts[FindEdgeEnd(_mesh, corner)] = isEndCut ? EndCut::Cut : EndCut::Whole;
     }
+    // The faces that make half a hexagon.
+    static constexpr Index kHalfHexagonFaces = 3;
+
     // Whether a line passes the vertex whose polygon has two cuts.
     bool passes(Index vert, VertexFan const &fan) const {
         SharpVertex const *const sharp = _mesh.FindSharpVertex(vert);
@@ -89,15 +92,15 @@ private:
         }
         Index const before = cuts[1] - cuts[0];
         Index const behind = fan.isClosed ? fan.GetSize() - before : before;
-        if (before != kNumPassedFaces || behind != kNumPassedFaces) {
-            // Half a hexagon is a cell at every level, and can be a face of its own.
-            auto const hasOneSurface = [&](Index k) {
-                return !partsFaces(_mesh.faceEdges[_mesh.GetVertexCorner(k)]);
-            };
-            if (!fan.isClosed || std::min(before, behind) < 2 ||
-                std::max(before, behind) > kMaxPassedFaces || !hasOneSurface(cuts[0]) ||
-                !hasOneSurface(cuts[1])) {
-                return false;
+        if (std::min(before, behind) < 2 || std::max(before, behind) > kMaxPassedFaces) {
+            return false;
+        }
+        // Where faces are kept apart, so must the halves of the polygon be at every level, as those of hexagons are.
+        if (fan.isClosed && (before != kHalfHexagonFaces || behind != kHalfHexagonFaces)) {
+            for (Index const k : cuts) {
+                if (partsFaces(_mesh.faceEdges[_mesh.GetVertexCorner(k)])) {
+                    return false;
+                }
             }
         }
         auto const passesValues = [&](FVarChannel const &channel) {

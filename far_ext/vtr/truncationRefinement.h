@@ -26,10 +26,10 @@ using EndCuts = std::vector<EndCut>;
 /// one such edge ends, but for a dart, or none though it is sharp itself, is cut at all its edges; so
 /// is one with two faces, whose polygon would have two vertices.
 ///
-/// A line passes a vertex whose rule is that of a crease if it is cut at the two edges of that alone, and has
-/// kNumPassedFaces faces on each side; a crease also if it has two to kMaxPassedFaces there, and the edges would not be cut
-/// if they were not sharp.  A line does not pass a vertex that is non-manifold, or where in a channel one of the edges is a
-/// seam and the other is not, or a value is sharp.
+/// A line passes a vertex whose rule is that of a crease if it is cut at the two edges of that alone, and has two to
+/// kMaxPassedFaces faces on each side; unless it is non-manifold, or in a channel one of the edges is a seam and the other
+/// is not, or a value is sharp there, or the edges would be cut if they were not sharp, and the polygon is no hexagon with
+/// three faces on each side.
 EndCuts FindEndCuts(Hierarchy const &base, Far::ConstIndexArray labels);
 
 /// Cuts for the value mesh of a channel of \p mesh, both of level 0.

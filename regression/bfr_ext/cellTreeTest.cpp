@@ -29,6 +29,7 @@ namespace OpenSubdivHex::Regression::cellTreeTest {
 using BfrExt::CellForest;
 using BfrExt::CellTree;
 using BfrExt::LevelTessellation;
+using BfrExt::Parameterization;
 using BfrExt::Polyline;
 using BfrExt::Surface;
 
@@ -122,31 +123,31 @@ TEST(Polyline, LevelsAndPlaces) {
             EXPECT_TRUE(polyline.Contains(Polyline(level - 1)));
         }
     }
-    EXPECT_EQ(Polyline(2).GetPlaces(), (std::vector<Polyline::Place>{1024, 3072}));
+    EXPECT_EQ(Polyline(2).GetPlaces(), (std::vector<Polyline::Place>{2048, 6144}));
     EXPECT_EQ(Polyline(2).GetParameter(1), 0.75);
 
     Polyline start;
     Polyline end;
-    ASSERT_TRUE(Polyline::FromPlaces({256, 768, 1024, 3072}, &start));
-    ASSERT_TRUE(Polyline::FromPlaces({1024, 1536, 2560, 3072}, &end));
+    ASSERT_TRUE(Polyline::FromPlaces({512, 1536, 2048, 6144}, &start));
+    ASSERT_TRUE(Polyline::FromPlaces({2048, 3072, 5120, 6144}, &end));
     EXPECT_EQ(start.GetReversed().GetPlaces(),
-              (std::vector<Polyline::Place>{1024, 3072, 3328, 3840}));
+              (std::vector<Polyline::Place>{2048, 6144, 6656, 7680}));
     Polyline both = start;
     both.Merge(end);
-    EXPECT_EQ(both.GetPlaces(), (std::vector<Polyline::Place>{256, 768, 1024, 1536, 2560, 3072}));
+    EXPECT_EQ(both.GetPlaces(), (std::vector<Polyline::Place>{512, 1536, 2048, 3072, 5120, 6144}));
     EXPECT_TRUE(both.Contains(start) && both.Contains(end));
     EXPECT_FALSE(start.Contains(both));
     for (std::vector<Polyline::Place> const &places :
-         std::vector<std::vector<Polyline::Place>>{{1024},
-                                                   {3072},
-                                                   {2048},
-                                                   {256, 768},
-                                                   {1024, 1024, 3072},
-                                                   {3072, 1024},
-                                                   {0, 1024, 3072},
-                                                   {1024, 3072, 4096},
-                                                   {1024, 1500, 2560, 3072},
-                                                   {1024, 2048, 3072}}) {
+         std::vector<std::vector<Polyline::Place>>{{2048},
+                                                   {6144},
+                                                   {4096},
+                                                   {512, 1536},
+                                                   {2048, 2048, 6144},
+                                                   {6144, 2048},
+                                                   {0, 2048, 6144},
+                                                   {2048, 6144, 8192},
+                                                   {2048, 3000, 5120, 6144},
+                                                   {2048, 4096, 6144}}) {
         EXPECT_FALSE(Polyline::FromPlaces(places, &both));
     }
     EXPECT_EQ(both.GetNumPoints(), 6);
@@ -174,7 +175,7 @@ TEST(CellTree, RefinesWhatItIsAskedTo) {
     EXPECT_EQ(tree.GetEdgePolyline(2), Polyline(2));
     tree.Refine(start + 1);
     EXPECT_EQ(tree.GetEdgePolyline(2).GetPlaces(),
-              (std::vector<Polyline::Place>{256, 768, 1024, 3072}));
+              (std::vector<Polyline::Place>{512, 1536, 2048, 6144}));
     EXPECT_EQ(tree.GetMaxLevel(), 4);
     for (int level = 0; level < 6; ++level) {
         EXPECT_EQ(CellTree(3, level).GetEdgePolyline(1), Polyline(level));
@@ -508,6 +509,46 @@ TEST(CellForest, TagsAndFlawsStayClosed) {
         ++numShapes;
     }
     counts.Bound(0.001, 0.008);
+}
+
+// The long edge has no sector of its own, and is divided by its neighbours' cells and those of the F-faces.
+TEST(CellTree, HalfPolygonsAreTiled) {
+    for (int const size : {3, 4, 5, 6, 9}) {
+        FarExt::FaceShape const shape(size, true);
+        std::mt19937 random(static_cast<unsigned>(size));
+        for (int level = 0; level <= 5; ++level) {
+            SCOPED_TRACE(testing::Message() << size << " vertices, level " << level);
+            CellTree const tree(shape, level);
+            EXPECT_EQ(tree.GetNumLeaves(), 1 + (size - 1) * ((1 << 2 * level) - 1) / 3);
+            EXPECT_EQ(tree.GetEdgePolyline(0), Polyline(level + 1));
+            for (int edge = 1; edge < size; ++edge) {
+                EXPECT_EQ(tree.GetEdgePolyline(edge), Polyline(level));
+            }
+            LevelTessellation const ofTree(tree);
+            LevelTessellation const ofLevel(Parameterization(shape), level);
+            ASSERT_TRUE(ofTree.IsValid() && ofLevel.IsValid());
+            ASSERT_NO_FATAL_FAILURE(expectPlaneTiling(ofLevel));
+            EXPECT_EQ(GetFacets(ofTree), GetFacets(ofLevel));
+            EXPECT_EQ(ofLevel.GetNumEdgeCoords(0), Polyline(level + 1).GetNumPoints());
+            ASSERT_NO_FATAL_FAILURE(
+                expectPlaneTiling(LevelTessellation(MakeRandomTree(shape, random))));
+            // Edges of levels of their own.
+            std::vector<int> levels(std::size_t(size) + 1, level);
+            for (int &ofEdge : levels) {
+                ofEdge = int(random() % 6);
+            }
+            LevelTessellation const mixed(Parameterization(shape), size + 1, levels.data());
+            ASSERT_NO_FATAL_FAILURE(expectPlaneTiling(mixed));
+            for (int edge = 0; edge < size; ++edge) {
+                int const ofEdge = levels[std::size_t(edge)] + (edge == 0 ? 1 : 0);
+                EXPECT_EQ(mixed.GetNumEdgeCoords(edge), Polyline(ofEdge).GetNumPoints());
+            }
+        }
+    }
+    int const levels[] = {LevelTessellation::kLastLevel, 0, 0, 0, 0};
+    LevelTessellation const finest(Parameterization(FarExt::FaceShape(4, true)), 5, levels);
+    ASSERT_TRUE(finest.IsValid());
+    EXPECT_EQ(finest.GetNumEdgeCoords(0), (1 << (LevelTessellation::kLastLevel + 2)) / 3 - 1);
 }
 
 // Trees of the faces of level 1; of features in turn one mask, since each takes its time.

@@ -67,7 +67,7 @@ RandomPatchLevels makeLevels(FarExt::TopologyLevel const &base, unsigned seed, S
 BfrExt::CellForest makeForest(FarExt::TopologyRefiner const &refiner, unsigned seed, Size size) {
     BfrExt::CellForest forest = MakeRandomForest(refiner, seed);
     for (int face = 0; size == Size::InSections && face < 2; ++face) {
-        forest.SetTree(face, MakeLargeTree(forest.GetTree(face).GetFaceSize(), seed));
+        forest.SetTree(face, MakeLargeTree(forest.GetTree(face).GetFaceShape(), seed));
     }
     forest.MatchEdges();
     return forest;

@@ -244,7 +244,7 @@ TEST(PatchStreamTest, HandsOutTreesThatFacesShare) {
     BfrExt::CellForest forest(*refiner);
     std::mt19937 random(3);
     for (int face = 0; face < forest.GetNumFaces(); ++face) {
-        BfrExt::CellTree tree(forest.GetTree(face).GetFaceSize(), int(random() % 3));
+        BfrExt::CellTree tree(forest.GetTree(face).GetFaceShape(), int(random() % 3));
         if (random() % 2 == 0) {
             tree.Refine(tree.GetNumCells() - 1);
         }

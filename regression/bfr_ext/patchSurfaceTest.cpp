@@ -37,7 +37,8 @@ void forEachPlace(Far::PatchTable const &table, PatchMap const &map,
         double const center[2] = {size == 3 ? 1.0 / 3 : 0.5,
                                   size == 3 ? 1.0 / 3 : 0.5 / std::tan(double(EIGEN_PI) / size)};
         auto const &coords = map.GetCoords(patch);
-        bool const isAtCenter = std::hypot(coords[4] - center[0], coords[5] - center[1]) < 1e-9;
+        bool const isAtCenter = !surfaceLevel.IsFaceHalf(map.GetFace(patch)) &&
+                                std::hypot(coords[4] - center[0], coords[5] - center[1]) < 1e-9;
         for (int i = 0; i < (isKite && !isAtCenter ? 1 : 4); i += isKite ? 2 : 1) {
             add(PatchMap::Place{patch, i == 1 || i == 2 ? 1.0 : 0.0, i >= 2 ? 1.0 : 0.0}, true);
         }

@@ -274,7 +274,7 @@ TEST(Parameterization, TakesPlacesOutsideToTheFaceAndNoneForNone) {
     for (int const size : {5, 7}) { // before a sub-face they are moved to its side
         Parameterization const parameterization(size);
         auto const find = [&](FacePlace const &uv) {
-            auto const point = BfrExt::internal::FindBfrPlace(parameterization, uv, 0).point;
+            auto const point = BfrExt::internal::FindBfrPlace(parameterization, size, uv, 0).point;
             return std::make_pair(point.sector, point.coords);
         };
         for (double const far : {0.01, 5.0, 1e300, kInfinite}) {
@@ -286,14 +286,14 @@ TEST(Parameterization, TakesPlacesOutsideToTheFaceAndNoneForNone) {
         Parameterization const parameterization(size);
         for (double const far : {5.0, 1e300, kInfinite}) {
             for (FacePlace const &uv : {FacePlace{far, 0.2}, {-far, far}, {0.1, -far}}) {
-                auto const place = BfrExt::internal::FindBfrPlace(parameterization, uv, 0);
+                auto const place = BfrExt::internal::FindBfrPlace(parameterization, size, uv, 0);
                 double const sum = place.point.coords[0] + place.point.coords[1];
                 EXPECT_TRUE(size <= 4 ? std::abs(sum - 1) <= 1e-15 : sum <= 1)
                     << size << " " << uv[0];
             }
         }
         for (FacePlace const &uv : {FacePlace{kNan, 0.2}, {0.2, kNan}}) {
-            auto const place = BfrExt::internal::FindBfrPlace(parameterization, uv, 0);
+            auto const place = BfrExt::internal::FindBfrPlace(parameterization, size, uv, 0);
             EXPECT_TRUE(std::isnan(place.point.coords[0] + place.point.coords[1])) << size;
         }
     }

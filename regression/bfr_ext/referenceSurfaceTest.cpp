@@ -45,11 +45,13 @@ public:
         for (BasePiece &piece : _pieces) {
             // The library may begin a face at another corner.
             std::vector<int> const &corners = match.GetLibraryCorners(level, piece.face);
-            ReferencePolygon const polygon = piece.places;
-            for (std::size_t i = 0; i < polygon.size(); ++i) {
+            piece.baseFace = match.GetLibraryFace(level, piece.face);
+            // A face that a crease crosses is two of the reference.
+            int const size = refiner.GetLevel(level).GetFaceVertices(piece.baseFace).size();
+            ReferencePolygon const polygon = DivideBasePolygon(size, 0)[0];
+            for (std::size_t i = 0; i < piece.places.size(); ++i) {
                 piece.places[i] = polygon[std::size_t(corners[i])];
             }
-            piece.baseFace = match.GetLibraryFace(level, piece.face);
         }
         setPlaces();
     }

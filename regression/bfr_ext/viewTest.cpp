@@ -1017,8 +1017,7 @@ TEST(View, ThicknessIsCloseToThatOfTheSurface) {
                     }
                 };
                 auto const measure = [&](std::size_t cell) {
-                    bool const isWhole = refined[cell].GetType().IsWhole();
-                    CellGrid grid(isWhole ? refined[cell].GetType().GetNumCorners() : 0);
+                    CellGrid grid(refined[cell].GetType().GetShape());
                     grid.Sample(refined, cell, samples);
                     CellMeasures own;
                     std::vector<CellMeasures> children(std::size_t(grid.GetNumChildren()));

@@ -288,8 +288,8 @@ TEST(Truncation, CreasesPassVertices) {
     }
 }
 
-// The vertex is kept where a side has one face or very many, and beside another sharp edge, a sharp vertex, a hole or a
-// seam along one of the edges alone; and if the sides differ, where they have something else to keep apart.
+// One face on a side, another sharp edge, a sharp vertex, a seam alone, or a value that stays: the vertex is kept; and if
+// the sides differ, where they have something else to keep apart.
 TEST(Truncation, KeepsVerticesOfOtherLines) {
     auto const isKept = [](Shape const &shape) {
         auto const refiner = createRefiner(shape, ReferenceMask::Smooth, 1);

@@ -106,7 +106,8 @@ std::vector<BasePiece> MakeBasePieces(TaggedMesh const &base) {
         std::vector<int> corners(base.faces[f].vertices.size());
         std::iota(corners.begin(), corners.end(), 0);
         int const size = int(corners.size());
-        pieces.push_back({int(f), int(f), corners, DivideBasePolygon(size, 0)[0], false});
+        pieces.push_back(
+            {int(f), int(f), corners, DivideBasePolygon(size, 0)[0], base.faces[f].isHalf});
     }
     return pieces;
 }
@@ -124,7 +125,8 @@ std::vector<BasePiece> RefineBasePieces(TaggedMesh const &mesh, TaggedMesh const
         }
         std::vector<Corners> ofFace;
         if (face.isHalf) {
-            ofFace = {{0, 1, 2, 3}};
+            ofFace.emplace_back(face.vertices.size());
+            std::iota(ofFace[0].begin(), ofFace[0].end(), 0);
         } else if (face.vertices.size() == 6) {
             ofFace = {{0, 3, 4, 5}, {3, 0, 1, 2}};
         }

@@ -59,8 +59,7 @@ ReferenceCuts FindCuts(TaggedMesh const &mesh, std::vector<TaggedMesh> const &va
                 result.cuts[corner.face][corner.place] = true;
             }
         }
-        // A line goes through a vertex where nothing else is: a border through one with three faces, a crease through one
-        // with two to 64 on each side.
+        // A line goes through a vertex with two to 64 faces on each side where nothing else is.
         bool isPassed = fans.size() == 1 && !isSharp && GetRule(mesh, v) == TaggedRule::Crease;
         if (isPassed) {
             std::vector<Side> const &corners = fans[0].corners;
@@ -76,7 +75,7 @@ ReferenceCuts FindCuts(TaggedMesh const &mesh, std::vector<TaggedMesh> const &va
             }
             int const size = int(corners.size());
             if (!fans[0].isClosed) {
-                isPassed = isPassed && ends.size() == 1 && size == 3;
+                isPassed = isPassed && ends.size() == 1 && 2 <= size && size <= 64;
             } else if (ends.size() != 2) {
                 isPassed = false;
             } else {

@@ -219,10 +219,16 @@ std::unique_ptr<PatchNumbering> PatchNumbering::Create(PatchStream<REAL> const &
         numbering->_pointOfVertex.push_back(next);
         next += numbering->findOwner(base.GetVertexFaces(vert)) == Far::INDEX_INVALID ? 0 : 1;
     }
-    std::array<int, Polyline::kLastLevel + 1> numEdgePoints; // by level
+    // By level; the long edge of half a polygon has the points of another level.
+    std::array<int, Polyline::kLastLevel + 2> numEdgePoints;
     for (std::size_t level = 0; level < numEdgePoints.size(); ++level) {
         numEdgePoints[level] = Polyline(int(level)).GetNumPoints();
     }
+    auto const isLongEdge = [&](Index edge) {
+        Index const face = base.GetEdgeFaces(edge)[0];
+        return base.GetFaceEdges(face)[0] == edge &&
+               stream.GetFactory().GetFaceParameterization(face).GetFaceShape().isHalf;
+    };
     for (Index edge = 0; edge < base.GetNumEdges(); ++edge) {
         numbering->_firstPointOfEdge.push_back(next);
         if (numbering->findOwner(base.GetEdgeFaces(edge)) == Far::INDEX_INVALID) {
@@ -230,7 +236,8 @@ std::unique_ptr<PatchNumbering> PatchNumbering::Create(PatchStream<REAL> const &
         }
         next += stream.GetForest()
                     ? stream.GetForest()->GetPolyline(edge).GetNumPoints()
-                    : numEdgePoints[std::size_t(stream.GetLevels().GetEdgeLevel(edge))];
+                    : numEdgePoints[std::size_t(stream.GetLevels().GetEdgeLevel(edge) +
+                                                (isLongEdge(edge) ? 1 : 0))];
     }
     numbering->_firstPointOfEdge.push_back(next);
     numbering->_firstFacet.push_back(0);
