@@ -45,6 +45,7 @@ int CellTree::Refine(int cell) {
         return 0;
     }
     Cell const parent = getCell(cell);
+    int const borderSides[2] = {GetBorderSide(cell), GetLongEdgeSide(cell)};
     int const first = GetNumCells();
     bool const hasNumbers =
         std::int64_t(first) + GetNumChildren(cell) <= std::numeric_limits<int>::max();
@@ -75,7 +76,7 @@ int CellTree::Refine(int cell) {
         static constexpr signed char kSidesOnLongEdge[4] = {0, 3, -1, 1};
         children[child] = {0, parent.sector, level, {}};
         for (std::size_t edge = 0; edge < 2; ++edge) {
-            int const side = parent.borderSides[edge];
+            int const side = borderSides[edge];
             bool const isSide = child > 0 && side == child;
             children[child].borderSides[edge] =
                 side == 0 ? kSidesOnLongEdge[child] : static_cast<signed char>(isSide ? 0 : -1);
@@ -91,7 +92,7 @@ void CellTree::addPoints(int cell, std::size_t edge, int start, int end,
     if (child == 0) {
         return;
     }
-    int const side = getCell(cell).borderSides[edge];
+    int const side = edge == 0 ? GetBorderSide(cell) : GetLongEdgeSide(cell);
     if (side > 0) {
         addPoints(child + side, edge, start, end, places);
         return;

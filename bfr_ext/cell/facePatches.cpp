@@ -52,7 +52,8 @@ void forEachChild(FaceShape shape, int numChildren, CornerAges const &ages,
     function(0, CornerAges(ages.size(), 0));
     int const firstEdge = shape.size == 0 ? 1 : shape.GetFirstSector();
     for (int child = 1; child < numChildren; ++child) {
-        function(child, findEdgeAges(ages, std::size_t(child - 1 + firstEdge)));
+        int const edge = child - 1 + firstEdge;
+        function(child, findEdgeAges(ages, std::size_t(edge)));
     }
 }
 

@@ -273,6 +273,7 @@ bool TessellationData::SetLevels(Parameterization const &ofFace, int numLevels, 
         return false;
     }
     std::vector<Polyline> edges;
+    edges.reserve(std::size_t(size));
     for (int edge = 0; edge < size; ++edge) {
         edges.emplace_back(GetEdgeLevel(std::size_t(edge)));
     }

@@ -22,7 +22,10 @@ bool hasFeatures(LimitPatch const &patch) {
     return hasTags(patch.edgeSharpness) || hasTags(patch.diagonalSharpness) ||
            hasTags(patch.vertSharpness) || !patch.nonManifoldVerts.empty() ||
            !patch.lineCorners.empty() || !patch.sharpVerts.empty() || patch.HasCornerTags() ||
-           !patch.irregularVerts.empty() || patch.numHexagonalSteps != 0;
+           !patch.irregularVerts.empty() || patch.numHexagonalSteps != 0 ||
+           // A half face, which has masks of its own.
+           std::find(patch.otherCorners.begin(), patch.otherCorners.end(),
+                     FarExt::internal::kSharpBoundaryB) != patch.otherCorners.end();
 }
 
 // Copies so few points that the call of a function would take longer.

@@ -582,4 +582,42 @@ TEST(CellForest, BehindAFirstStepStaysClosed) {
     counts.Bound(0.005, 0.012);
 }
 
+// All places, on the long edge among them, which no other face has.
+TEST(CellForest, HalfPolygonsHaveThePointsOfPlaces) {
+    Sdc::Options options;
+    options.SetVtxBoundaryInterpolation(Sdc::Options::VTX_BOUNDARY_EDGE_ONLY);
+    Shape const &shape = GetShape("triangleGrid");
+    for (SurfaceCase const &surfaceCase : kTruncateCases) {
+        auto const refiner = CreateSurfaceRefiner(shape, surfaceCase, 0, options);
+        SurfaceSet<double> const surfaces(*refiner, shape.positions);
+        std::mt19937 random(1);
+        int numHalves = 0;
+        for (int face = 0; face < refiner->GetLevel(1).GetNumFaces(); ++face) {
+            Surface<double> const &surface = surfaces[face];
+            if (!surface.GetFaceShape().isHalf) {
+                continue;
+            }
+            ++numHalves;
+            std::vector<double> control(3 * std::size_t(surface.GetNumControlPoints()));
+            surface.GatherControlPoints(surfaces.GetPositions().data(), 3, control.data(), 3);
+            for (LevelTessellation const &tessellation :
+                 {LevelTessellation(surface.GetParameterization(), 3),
+                  LevelTessellation(MakeRandomTree(surface.GetFaceShape(), random))}) {
+                auto const numPlaces = std::size_t(tessellation.GetNumCoords());
+                std::vector<double> p(3 * numPlaces), coords(2 * numPlaces);
+                surface.Evaluate(tessellation, control.data(), 3, p.data(), 3);
+                tessellation.GetCoords(coords.data());
+                for (std::size_t i = 0; i < numPlaces; ++i) {
+                    Vector3 const expected = surfaces.EvaluatePosition(face, &coords[2 * i]);
+                    for (std::size_t k = 0; k < 3; ++k) {
+                        ASSERT_NEAR(p[3 * i + k], expected[k], 1e-11)
+                            << "face " << face << ", place " << i;
+                    }
+                }
+            }
+        }
+        EXPECT_GT(numHalves, 3);
+    }
+}
+
 } // namespace OpenSubdivHex::Regression::cellTreeTest
