@@ -39,11 +39,14 @@ public:
     std::vector<Point> GetPoints() const;
     /// Has Add() keep the faces; behind Start().
     void KeepFaces();
-    /// The faces that were kept, each with its size and vertices, first the inner ones, then the others.
-    std::vector<std::uint8_t> GetFaces() const;
+    /// The sizes and the vertices of the faces that were kept; inner vertices come before others.
+    void GetFaces(std::vector<int> &sizes, std::vector<int> &verts) const;
 
 private:
     static constexpr int kMaxVerts = 256;
+    // A face makes a vertex, or is the last of an inner one, and has three more than it makes at most.
+    static constexpr int kMaxFaces = 1 + kMaxInner + kMaxVerts;
+    static constexpr int kMaxFaceBytes = 4 * kMaxFaces + kMaxVerts;
 
     struct Vertex {
         int before; // along the boundary
@@ -73,7 +76,8 @@ private:
     int _inner[kMaxInner] = {};
     Vertex _verts[kMaxVerts] = {};
     Point _points[kMaxVerts] = {}; // by vertex
-    std::vector<std::uint8_t> _faces;
+    std::uint8_t _faces[kMaxFaceBytes] = {}; // of each its size and vertices
+    int _numFaceBytes = 0;
 };
 
 } // namespace OpenSubdivHex::BfrExt::internal

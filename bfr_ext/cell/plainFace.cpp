@@ -102,20 +102,13 @@ CellType const &PlainFaceType::make() const {
 }
 
 CellPatch PlainFaceType::makeCell(bool hasSignature) const {
-    GrowingPatch patch;
+    static thread_local GrowingPatch patch;
     patch.Start(getFaceSize(_key.data()));
     patch.KeepFaces();
     grow(_key.data(), _numVerts, patch);
-    std::vector<std::uint8_t> const faces = patch.GetFaces();
     std::vector<int> faceSizes;
     std::vector<Far::Index> faceVerts;
-    faceSizes.reserve(faces.size());
-    faceVerts.reserve(faces.size());
-    for (std::size_t i = 0; i < faces.size(); i += 1 + faces[i]) {
-        faceSizes.push_back(faces[i]);
-        auto const first = faces.begin() + std::ptrdiff_t(i) + 1;
-        faceVerts.insert(faceVerts.end(), first, first + faces[i]);
-    }
+    patch.GetFaces(faceSizes, faceVerts);
     return FarExt::internal::MakePlainBaseCell(std::move(faceSizes), std::move(faceVerts),
                                                _numVerts, GetNumPoints(), hasSignature);
 }
