@@ -93,7 +93,7 @@ private:
 /// Holes have no surface, nor have the few faces that FaceHasLimitSurface() names and, with VTX_BOUNDARY_NONE, faces at a
 /// boundary, because such a boundary has no limit.
 ///
-/// **Memory.** The first surface of a mesh, or of a channel, takes 8 bytes for each corner of the mesh.  When a face gets its
+/// **Memory.** The first surface of a mesh, or of a channel, takes 8 bytes for each corner and each vertex of the mesh.  When a face gets its
 /// second surface, about 200 bytes are kept for it, within Options::SetMemoryOfFaces(): further surfaces of the face, as in
 /// the frames of an animation, are a look-up.
 ///
@@ -301,18 +301,20 @@ private:
     std::shared_ptr<Types const> getTypes() const;
     int getPatchLevel(internal::BaseType const &type) const;
     bool hasRefinedAgain() const;
+    bool isFace(Index face) const;
     FarExt::CallStatus checkIsFace(Index face) const;
     FarExt::CallStatus checkCrowd(Index face, int channel, Index levelFace) const;
     internal::CellType const *findType(internal::CellTypes &types, int channel, Index levelFace,
                                        Index face, FarExt::Interpolation interpolation,
                                        std::vector<Index> &points,
                                        FarExt::CallStatus &status) const;
-    FarExt::CallStatus makeFace(Types const &types, Index face, FarExt::Interpolation interpolation,
-                                int channel, FaceMaker &maker,
-                                internal::KeptFace<internal::BaseType> const *&made) const;
+    internal::KeptFace<internal::BaseType> const *makeFace(Types const &types, Index face,
+                                                           FarExt::Interpolation interpolation,
+                                                           int channel, FaceMaker &maker,
+                                                           FarExt::CallStatus &status) const;
     template <typename REAL>
     void set(internal::KeptFace<internal::BaseType> const &face, bool isKept,
-             std::shared_ptr<Types const> const &owner, Surface<REAL> &surface) const;
+             std::shared_ptr<Types const> &owner, Surface<REAL> &surface) const;
 
     FarExt::TopologyRefiner const &_refiner;
     FarExt::TopologyLevel const _level;

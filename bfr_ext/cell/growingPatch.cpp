@@ -132,15 +132,22 @@ void GrowingPatch::keepFace(int vert, int last, int firstMade, int behind) {
     _numFaceBytes = int(to - _faces);
 }
 
-std::vector<GrowingPatch::Point> GrowingPatch::GetPoints() const {
-    std::vector<Point> points;
-    points.reserve(std::size_t(_numMade - _numInner));
+GrowingPatch::Run *GrowingPatch::GetRuns(Run *runs) const {
+    Run *const begin = runs;
     for (int vert = _size; vert < _numMade; ++vert) {
-        if (isPoint(vert)) {
-            points.push_back(_points[vert]);
+        if (!isPoint(vert)) {
+            continue;
+        }
+        Point const &point = _points[vert];
+        Run *const last = runs - 1;
+        if (runs != begin && point.vert == last->first.vert && point.place == last->first.place &&
+            point.corner == last->first.corner + last->numPoints) {
+            ++last->numPoints;
+        } else {
+            *runs++ = {point, 1};
         }
     }
-    return points;
+    return runs;
 }
 
 void GrowingPatch::GetFaces(std::vector<int> &sizes, std::vector<int> &verts) const {

@@ -86,7 +86,8 @@ private:
             std::vector<double> weights;
             CellRules const &ofCells = _masks.GetRules();
             FarExt::internal::UseNextMasks(
-                _corners.GetPatch(), ofCells.sdcOptions, ofCells.hexSchemeOptions, ofCells.interpolation,
+                _corners.GetPatch(), ofCells.sdcOptions, ofCells.hexSchemeOptions,
+                ofCells.interpolation,
                 [&](Refinement const &refinement, RefinementRules const &rules) {
                     weights = make(refinement, rules);
                 });

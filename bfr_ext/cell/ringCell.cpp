@@ -202,7 +202,8 @@ RingItem const &RingItem::Get(CellType const &type, CellPatch const &patch, Ring
     constexpr int kKind = PatternTable::GetKind<double>(PatternOf::RingItem);
     return type.GetPatterns().Get<RingItem>(kKind, nullptr, nullptr, [&] {
         RingItem item;
-        bool const isPlain = item.rings.Init(PatchCorners(patch.patch), patch.locals, cells.GetMasks());
+        bool const isPlain =
+            item.rings.Init(PatchCorners(patch.patch), patch.locals, cells.GetMasks());
         auto const &ofItem = item.rings.GetRings();
         bool const isInLattice = std::all_of(ofItem.begin(), ofItem.end(),
                                              [](Ring const &ring) { return ring.isInLattice; });
@@ -231,8 +232,8 @@ public:
             face.edges.push_back(&_cells.FindEdge(key, [&] { return makeEdge(edge, key); }));
         }
         for (int vert = 0; vert < _numEdges; ++vert) {
-            face.verts.push_back(&_cells.FindVertex(findKey({getLayout(vert)}),
-                                                    [&] { return makeVertex(vert); }));
+            face.verts.push_back(
+                &_cells.FindVertex(findKey({getLayout(vert)}), [&] { return makeVertex(vert); }));
         }
         face.edges.shrink_to_fit();
         face.verts.shrink_to_fit();
@@ -303,7 +304,7 @@ private:
     std::optional<CellRefinement> _refinement;
 };
 
-FaceRings::FaceRings(CellPatch const &cell, RingCells &cells) {
+FaceRings::FaceRings(CellPatch const &cell, RingCells &cells) : _latticeItems(cells.GetMemory()) {
     PatchCorners const corners(cell.patch);
     bool const isPlain = _rings.Init(corners, cell.locals, cells.GetMasks());
     assert(isPlain);

@@ -180,6 +180,7 @@ public:
 
     CellRules const &GetRules() const { return _masks.GetRules(); }
     InnerMasks &GetMasks() { return _masks; }
+    MemoryCount &GetMemory() { return _types.GetMemory(); }
 
     /// \brief Finds a cell by its kind and the rings that tell what it is.
     ///
@@ -259,6 +260,8 @@ public:
     FaceRings(FarExt::internal::CellPatch const &cell, RingCells &cells);
 
     VertexRings const &GetRings() const { return _rings; }
+    /// The edges and vertices that are in a lattice, by item and turn; made on demand.
+    PatternTable &GetLatticeItems() const { return _latticeItems; }
     std::size_t GetHeapSize() const { return internal::GetHeapSize(_rings); }
     /// Whether a vertex and its neighbours are in a regular lattice, or both vertices of an edge.
     bool IsVertexInLattice(int vert) const {
@@ -283,8 +286,9 @@ public:
 
     /// The long edge of an edge, which may run against the face; null where it is in a lattice.
     RingCell const *GetLongEdge(int edge, bool isReversed) const {
-        return IsEdgeInLattice(edge) ? nullptr
-                                     : _cells->edges[std::size_t(edge)]->longEdges[isReversed ? 1 : 0];
+        return IsEdgeInLattice(edge)
+                   ? nullptr
+                   : _cells->edges[std::size_t(edge)]->longEdges[isReversed ? 1 : 0];
     }
     /// Writes the indices of a long edge.
     void FindLongEdgeIndices(int edge, bool isReversed, int *indices) const;
@@ -302,6 +306,7 @@ private:
 
     VertexRings _rings;
     RingFace const *_cells;
+    mutable PatternTable _latticeItems;
 };
 
 /// The points of rings, evaluated.

@@ -63,7 +63,8 @@ public:
         _scratch.program.clear();
         _scratch.weights.clear();
         _scratch.masks.clear();
-        _scratch.points.resize(std::max(_scratch.points.size(), corners.GetPatch().faceVerts.size()));
+        _scratch.points.resize(
+            std::max(_scratch.points.size(), corners.GetPatch().faceVerts.size()));
     }
 
     bool Add(int firstCorner) {
