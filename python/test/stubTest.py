@@ -101,7 +101,7 @@ def test_stubs_have_the_docstrings_of_the_module():
     functions = {node.name: ast.get_docstring(node) for node in surface.body
                  if isinstance(node, ast.FunctionDef)}
     assert functions["face_size"] == "Vertices of the face."
-    assert functions["evaluate"] == "The points at places, of the shape (places, length)."
+    assert functions["evaluate"] == "Points of the surface, shape (n, length)."
 
 
 def test_names_of_options_are_those_that_are_taken():
