@@ -5,6 +5,7 @@ import ast
 import builtins
 import inspect
 import pathlib
+import pydoc
 import re
 
 import opensubdivhex as osh
@@ -144,3 +145,10 @@ def test_objects_say_what_they_are():
         "<LevelTessellation face_size=4, levels=[1, 1, 1, 1, 1]>"
     refiner.refine_uniform(1)
     assert "take it again" in repr(level)
+
+
+def test_help_lists_everything():
+    text = pydoc.plain(pydoc.render_doc(osh))
+    for name in osh.__all__:
+        listed = f"class {name}(" if isinstance(getattr(osh, name), type) else name
+        assert listed in text, name
