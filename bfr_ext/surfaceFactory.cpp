@@ -80,7 +80,7 @@ struct SurfaceFactory::Types {
         : cellTypes(std::move(ofCache)),
           kept(factory.GetNumFaces(),
                std::size_t(kNumInterpolations + factory.GetNumFVarChannels()),
-               factory._options.GetMemoryOfFaces()) {
+               factory._cache->GetMaxMemory() / 4, cellTypes->GetMemory()) {
         for (Interpolation const interpolation : {Interpolation::Vertex, Interpolation::Varying}) {
             plain[std::size_t(interpolation)] =
                 &cellTypes->GetPlainFaces(getRules(factory._refiner, interpolation));

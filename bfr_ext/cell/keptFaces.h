@@ -3,6 +3,7 @@
 #define OPENSUBDIVHEX_BFR_EXT_CELL_KEPT_FACES_H
 
 #include "byteBlocks.h"
+#include "memoryCount.h"
 
 #include <opensubdiv/far/types.h>
 
@@ -76,8 +77,9 @@ public:
 
     /// \param numKinds   of data, each of which has points of its own
     /// \param maxMemory  in bytes; what would take more is not kept
-    KeptFaces(int numFaces, std::size_t numKinds, std::size_t maxMemory)
-        : _numFaces(numFaces), _maxMemory(maxMemory), _kinds(numKinds) {}
+    /// \param memory     counts what the faces take
+    KeptFaces(int numFaces, std::size_t numKinds, std::size_t maxMemory, MemoryCount &memory)
+        : _numFaces(numFaces), _maxMemory(maxMemory), _memory(memory), _kinds(numKinds) {}
     KeptFaces(KeptFaces const &) = delete;
     KeptFaces &operator=(KeptFaces const &) = delete;
 
@@ -160,11 +162,13 @@ private:
             return false;
         }
         _numBytes += size;
+        _memory.Add(size);
         return true;
     }
 
     int const _numFaces;
     std::size_t const _maxMemory;
+    MemoryCount &_memory;
     Face const _metOnce{}; // whose address stands for faces that are not kept yet
     std::mutex _mutex;
     std::vector<Kind> _kinds;

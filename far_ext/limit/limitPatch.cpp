@@ -639,6 +639,8 @@ namespace {
 
 // A row of a matrix that is being formed: the sum of what was added, by column.
 struct SparseRow {
+    SparseRow() { entries.reserve(kUsualSize); }
+
     void Clear() { entries.clear(); }
     void AddWithWeight(Index column, double weight) { entries.emplace_back(column, weight); }
     void AddWithWeight(SparseRow const &row, double weight) {
@@ -646,6 +648,9 @@ struct SparseRow {
             entries.emplace_back(column, weight * rowWeight);
         }
     }
+
+    // Of the faces around a vertex of a few faces.
+    static constexpr std::size_t kUsualSize = 32;
 
     std::vector<std::pair<Index, double>> entries;
 };
