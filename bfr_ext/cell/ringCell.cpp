@@ -227,13 +227,9 @@ public:
 
     RingFace Make() {
         RingFace face = {&findChild(CellKind::Whole, findKey(_layouts), 0, 0), {}, {}};
-        for (int edge = 0; edge < _numEdges; ++edge) {
-            RingCells::Key const key = findKey({getLayout(edge), getLayout(edge + 1)});
-            face.edges.push_back(&_cells.FindEdge(key, [&] { return makeEdge(edge, key); }));
-        }
-        for (int vert = 0; vert < _numEdges; ++vert) {
-            face.verts.push_back(
-                &_cells.FindVertex(findKey({getLayout(vert)}), [&] { return makeVertex(vert); }));
+        for (int i = 0; i < _numEdges; ++i) {
+            face.edges.push_back(makeEdge(i));
+            face.verts.push_back(makeVertex(i));
         }
         face.edges.shrink_to_fit();
         face.verts.shrink_to_fit();
@@ -257,10 +253,10 @@ private:
         return *_refinement;
     }
 
-    // The key is that of the rings.
-    RingEdge makeEdge(int edge, RingCells::Key const &key) {
+    RingEdge makeEdge(int edge) {
         RingLayout const &start = getLayout(edge);
         RingLayout const &end = getLayout(edge + 1);
+        RingCells::Key const key = findKey({start, end});
         RingCell const &half = findChild(CellKind::Half, key, std::size_t(edge) + 1, edge);
         RingCell const &longEdge = findItem(CellKind::LongEdge, key, edge, 0);
         RingCell const &reversed =

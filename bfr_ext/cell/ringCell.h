@@ -163,8 +163,8 @@ struct RingFace {
     std::size_t GetHeapSize() const { return GetHeapSizes(edges, verts); }
 
     RingCell const *whole;
-    std::vector<RingEdge const *> edges;
-    std::vector<RingVertex const *> verts;
+    std::vector<RingEdge> edges;
+    std::vector<RingVertex> verts;
 };
 
 /// The cells of plain base faces with some rules.  Any number of threads may use it.
@@ -175,8 +175,7 @@ public:
 
     RingCells(CellTypes &types, CellRules const &rules)
         : _types(types), _masks(rules, types.GetMemory()), _found(types.GetMemory()),
-          _faces(types.GetMemory()), _edges(types.GetMemory()), _vertices(types.GetMemory()),
-          _latticeItems(types.GetMemory()) {}
+          _faces(types.GetMemory()), _latticeItems(types.GetMemory()) {}
 
     CellRules const &GetRules() const { return _masks.GetRules(); }
     InnerMasks &GetMasks() { return _masks; }
@@ -196,16 +195,6 @@ public:
     template <typename MAKE>
     RingFace const &FindFace(Key const &key, MAKE const &make) {
         return find<RingFace>(_faces, 0, key, make);
-    }
-    /// \brief Overload for an edge, by the rings of its start and of its end, both from the face on.
-    template <typename MAKE>
-    RingEdge const &FindEdge(Key const &key, MAKE const &make) {
-        return find<RingEdge>(_edges, 0, key, make);
-    }
-    /// Overload for a vertex, whose ring begins at the face.
-    template <typename MAKE>
-    RingVertex const &FindVertex(Key const &key, MAKE const &make) {
-        return find<RingVertex>(_vertices, 0, key, make);
     }
 
     /// \brief What make() gave first of a kind of items in the lattice of a size of faces: mostly all look like
@@ -232,8 +221,6 @@ private:
     InnerMasks _masks;
     PatternTable _found; // pointers, by kind and rings
     PatternTable _faces;
-    PatternTable _edges;
-    PatternTable _vertices;
     PatternTable _latticeItems;
 };
 
@@ -273,7 +260,7 @@ public:
     }
     /// A child of the face, in the order of RefineCell().
     RingCell const &GetChild(std::size_t child) const {
-        return child == 0 ? *_cells->whole : *_cells->edges[child - 1]->half;
+        return child == 0 ? *_cells->whole : *_cells->edges[child - 1].half;
     }
     /// Writes the indices of what a child has sums of.
     void FindChildIndices(std::size_t child, int *indices) const {
@@ -288,14 +275,14 @@ public:
     RingCell const *GetLongEdge(int edge, bool isReversed) const {
         return IsEdgeInLattice(edge)
                    ? nullptr
-                   : _cells->edges[std::size_t(edge)]->longEdges[isReversed ? 1 : 0];
+                   : _cells->edges[std::size_t(edge)].longEdges[isReversed ? 1 : 0];
     }
     /// Writes the indices of a long edge.
     void FindLongEdgeIndices(int edge, bool isReversed, int *indices) const;
 
     /// The V-vertex of a vertex with so many faces before this one; null where it is in a lattice.
     RingCell const *GetVVertex(int vert, int turn) const {
-        return IsVertexInLattice(vert) ? nullptr : &_cells->verts[std::size_t(vert)]->Get(turn);
+        return IsVertexInLattice(vert) ? nullptr : &_cells->verts[std::size_t(vert)].Get(turn);
     }
 
 private:
