@@ -35,9 +35,9 @@ void joinRuns(std::vector<PlaceRun> &runs) {
 }
 
 LeafPlaces const &getHalfPlaces(int numSteps) {
-    static std::array<LeafPlaces, kNumStepsOfHalves + 1> const places = {
+    static std::array<LeafPlaces, kNumStepsOfHalves + 1> const kPlaces = {
         LeafPlaces(0, 0), LeafPlaces(0, 1), LeafPlaces(0, 2), LeafPlaces(0, 3), LeafPlaces(0, 4)};
-    return places[std::size_t(numSteps)];
+    return kPlaces[std::size_t(numSteps)];
 }
 
 } // namespace
@@ -180,7 +180,7 @@ CellPlan::CellPlan(CellPlan const &plan, Node const &leaf)
                       nullptr});
     for (PlaceRun const &run : leaf.runs) {
         for (int i = 0; i < run.count; ++i) {
-            LeafPlaces::Place const &place = (*leaf.leaf)[std::size_t(run.row + i)];
+            LeafPlaces::Place const &place = (*leaf.leaf)[std::size_t(run.row) + std::size_t(i)];
             Pair toCoords[2] = {leaf.toCoords[0], leaf.toCoords[1]};
             if (leaf.isWhole) {
                 BasePoint const base = MakeBasePoint(_faceSize, place.sector, place.coords);
