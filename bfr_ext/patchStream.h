@@ -57,8 +57,8 @@ private:
 /// The sink gets a patch for each base face that is no hole: a tessellation and its points and, if asked for, derivatives
 /// and values of varying and face-varying data.
 ///
-/// **Memory** is the sum of Options::SetMaxMemory(), the cache of the factory, and the faces that the factory keeps for the
-/// next frame (SurfaceFactory::Options::SetMemoryOfFaces()), with 8 bytes for each of their corners.
+/// **Memory** is the sum of Options::SetMaxMemory() and the cache of the factory, with 8 bytes for each corner and vertex of
+/// the mesh.
 ///
 /// A face whose tessellation would take more memory than a fourth of that has a patch for each of its
 /// *sections* (LevelTessellation::GetSection()).  Neighbouring sections share the points on their boundaries, as

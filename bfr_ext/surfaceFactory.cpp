@@ -81,7 +81,7 @@ struct SurfaceFactory::Types {
         : cellTypes(std::move(ofCache)),
           kept(factory.GetNumFaces(),
                std::size_t(kNumInterpolations + factory.GetNumFVarChannels()),
-               factory._options.GetMemoryOfFaces()) {
+               factory._cache->GetMaxMemory() / 4, cellTypes->GetMemory()) {
         for (Interpolation const interpolation : {Interpolation::Vertex, Interpolation::Varying}) {
             plain[std::size_t(interpolation)] =
                 &cellTypes->GetPlainFaces(getRules(factory._refiner, interpolation));
@@ -94,14 +94,13 @@ struct SurfaceFactory::Types {
     internal::KeptFaces<internal::BaseType> mutable kept;
 };
 
-// Those that the cache has now.
+// Those that the cache has now, which are others when those before are full.
 auto SurfaceFactory::getTypes() const -> std::shared_ptr<Types const> {
     std::shared_ptr<Types const> before; // goes without the lock
     std::lock_guard<std::mutex> const lock(_mutex);
-    std::shared_ptr<internal::CellTypes> cellTypes = _cache->Get();
-    if (!_types || _types->cellTypes != cellTypes) {
+    if (!_types || _cache->IsFull(*_types->cellTypes)) {
         before = std::move(_types);
-        _types = std::make_shared<Types const>(*this, std::move(cellTypes));
+        _types = std::make_shared<Types const>(*this, _cache->Get());
         _currentTypes.store(_types.get(), std::memory_order_release);
     }
     return _types;
@@ -140,19 +139,24 @@ bool SurfaceFactory::hasRefinedAgain() const {
     return _level.GetDepth() > 0 && _refiner.GetNumRefinements() != _numRefinements;
 }
 
+bool SurfaceFactory::isFace(Index face) const {
+    return 0 <= face && face < GetNumFaces() && !hasRefinedAgain() &&
+           _level.GetLevel().GetHoles(face) != FarExt::internal::kHole;
+}
+
 CallStatus SurfaceFactory::checkIsFace(Index face) const {
+    if (isFace(face)) {
+        return CallStatus();
+    }
     if (hasRefinedAgain()) {
         return FarExt::internal::Failure(
             StatusCode::InvalidArgument,
             "the refiner has refined again since the factory was made");
     }
-    bool const isFace = 0 <= face && face < GetNumFaces();
-    if (isFace && _level.GetLevel().GetHoles(face) != FarExt::internal::kHole) {
-        return CallStatus();
-    }
+    bool const isHole = 0 <= face && face < GetNumFaces();
     std::string const name = "face " + std::to_string(face);
     return CallStatus(StatusCode::InvalidArgument, ComponentType::Face, face,
-                      isFace ? name + " is a hole, which has no surface"
+                      isHole ? name + " is a hole, which has no surface"
                              : name + " is not one of the " + std::to_string(GetNumFaces()) +
                                    " faces of level " + std::to_string(_level.GetDepth()));
 }
@@ -259,13 +263,13 @@ struct SurfaceFactory::FaceMaker {
     std::vector<std::byte> bytes;
 };
 
-// Makes what the surface of a face is made of, of the bytes.
-CallStatus SurfaceFactory::makeFace(Types const &types, Index face, Interpolation interpolation,
-                                    int channel, FaceMaker &maker,
-                                    internal::BaseFace const *&made) const {
-    CallStatus status = checkIsFace(face);
-    if (!status.IsOk()) {
-        return status;
+// Makes what the surface of a face is made of, of the bytes; null, and a status, where it has none.
+internal::BaseFace const *SurfaceFactory::makeFace(Types const &types, Index face,
+                                                   Interpolation interpolation, int channel,
+                                                   FaceMaker &maker, CallStatus &status) const {
+    if (!isFace(face)) {
+        status = checkIsFace(face);
+        return nullptr;
     }
     FarExt::internal::Hierarchy const &hierarchy = _refiner.GetHierarchy();
     FVarChannel const *const values =
@@ -286,15 +290,14 @@ CallStatus SurfaceFactory::makeFace(Types const &types, Index face, Interpolatio
         points.resize(maker.points.size());
         std::copy(maker.points.begin(), maker.points.end(), points.data());
     } else {
-        return status;
+        return nullptr;
     }
     // Vertices of the value mesh of a later level are its values.
     if (values && depth == 0) {
         std::for_each_n(points.data(), int(points.size()) - 2 * size,
                         [&](Index &point) { point = values->valuesOfVertices[point]; });
     }
-    made = &points.Make(type, size);
-    return status;
+    return &points.Make(type, size);
 }
 
 template <typename REAL>
@@ -317,8 +320,9 @@ CallStatus SurfaceFactory::TryInit(Index face, Interpolation interpolation, int 
     }
     // Where memory runs out, the surface stays as it was.
     static thread_local FaceMaker maker;
-    internal::BaseFace const *own = nullptr;
-    CallStatus status = makeFace(*types, face, interpolation, channel, maker, own);
+    CallStatus status;
+    internal::BaseFace const *const own =
+        makeFace(*types, face, interpolation, channel, maker, status);
     if (!own) {
         surface.Clear();
     } else if (internal::BaseFace const *const added = types->kept.Add(kind, face, *own)) {
@@ -333,9 +337,9 @@ CallStatus SurfaceFactory::TryInit(Index face, Interpolation interpolation, int 
 // Makes the surface that of a face, which is kept or is its own; a null owner: it has that already.
 template <typename REAL>
 void SurfaceFactory::set(internal::BaseFace const &face, bool isKept,
-                         std::shared_ptr<Types const> const &owner, Surface<REAL> &surface) const {
+                         std::shared_ptr<Types const> &owner, Surface<REAL> &surface) const {
     if (owner) {
-        surface._owner = owner;
+        surface._owner = std::move(owner);
     }
     surface._keptFace = isKept ? &face : nullptr;
     surface._patchLevel = getPatchLevel(face.type);

@@ -42,7 +42,7 @@ class TypeCache;
 /// near, it grows by some kilobytes for it and for each type of cell that evaluation goes through.  It also keeps the
 /// weights of evaluated tessellations, for types of faces or of cells.
 ///
-/// **Memory** is bounded by what the constructor is told.  When half of it is taken, the cache forgets all types and finds
+/// **Memory** is bounded by what the constructor is told, with what factories keep of faces.  When half of it is taken, the cache forgets all types and finds
 /// again those that are asked for: results keep their bits.  The other half is for the types before, which surfaces that
 /// have them keep until they are initialised again or go.  GetMemory() exceeds the bound where surfaces of several such
 /// generations live at once, or a single one needs more.  If a model has more types than there is memory for, they
@@ -93,9 +93,9 @@ private:
 /// Holes have no surface, nor have the few faces that FaceHasLimitSurface() names and, with VTX_BOUNDARY_NONE, faces at a
 /// boundary, because such a boundary has no limit.
 ///
-/// **Memory.** The first surface of a mesh, or of a channel, takes 8 bytes for each corner of the mesh.  When a face gets its
-/// second surface, about 200 bytes are kept for it, within Options::SetMemoryOfFaces(): further surfaces of the face, as in
-/// the frames of an animation, are a look-up.
+/// **Memory.** The first surface of a mesh, or of a channel, takes 8 bytes for each corner and each vertex of the mesh.  When a face gets its
+/// second surface, about 200 bytes are kept for it, in up to a fourth of the cache: further surfaces of the face, as in the
+/// frames of an animation, are a look-up.  Faces beyond it are gathered again for each surface.
 ///
 /// Any number of threads may call its functions at once.  std::bad_alloc passes through.
 class OPENSUBDIVHEX_API SurfaceFactory {
@@ -144,21 +144,11 @@ public:
         /// The level that was set; by default 3.
         int GetApproxLevelSharp() const { return _approxLevelSharp; }
 
-        /// Sets the memory, in bytes, that is kept for initialising surfaces of a face again.  Faces beyond it are gathered
-        /// again for each surface.
-        Options &SetMemoryOfFaces(std::size_t memory) {
-            _memoryOfFaces = memory;
-            return *this;
-        }
-        /// The memory that was set; by default 64 mebibytes, enough for about 300,000 faces.
-        std::size_t GetMemoryOfFaces() const { return _memoryOfFaces; }
-
     private:
         FVarID _defaultFVarID = 0;
         SurfaceFactoryCache *_externalCache = nullptr;
         int _approxLevelSmooth = 3;
         int _approxLevelSharp = 3;
-        std::size_t _memoryOfFaces = std::size_t(64) << 20;
     };
 
     /// \brief Makes a factory for \p refiner, which must live as long.
@@ -301,18 +291,20 @@ private:
     std::shared_ptr<Types const> getTypes() const;
     int getPatchLevel(internal::BaseType const &type) const;
     bool hasRefinedAgain() const;
+    bool isFace(Index face) const;
     FarExt::CallStatus checkIsFace(Index face) const;
     FarExt::CallStatus checkCrowd(Index face, int channel, Index levelFace) const;
     internal::CellType const *findType(internal::CellTypes &types, int channel, Index levelFace,
                                        Index face, FarExt::Interpolation interpolation,
                                        std::vector<Index> &points,
                                        FarExt::CallStatus &status) const;
-    FarExt::CallStatus makeFace(Types const &types, Index face, FarExt::Interpolation interpolation,
-                                int channel, FaceMaker &maker,
-                                internal::KeptFace<internal::BaseType> const *&made) const;
+    internal::KeptFace<internal::BaseType> const *makeFace(Types const &types, Index face,
+                                                           FarExt::Interpolation interpolation,
+                                                           int channel, FaceMaker &maker,
+                                                           FarExt::CallStatus &status) const;
     template <typename REAL>
     void set(internal::KeptFace<internal::BaseType> const &face, bool isKept,
-             std::shared_ptr<Types const> const &owner, Surface<REAL> &surface) const;
+             std::shared_ptr<Types const> &owner, Surface<REAL> &surface) const;
 
     FarExt::TopologyRefiner const &_refiner;
     FarExt::TopologyLevel const _level;

@@ -379,10 +379,10 @@ struct CellTypes::OfRules {
     };
 
     OfRules(CellTypes &types, CellRules const &rules)
-        : plainFaces(types, rules), ringCells(types, rules) {}
+        : ringCells(types, rules), plainFaces(types, ringCells) {}
 
-    PlainFaceTypes plainFaces;
     RingCells ringCells;
+    PlainFaceTypes plainFaces;
     std::vector<std::unique_ptr<Finder>> finders; // that no thread uses
 };
 

@@ -132,21 +132,29 @@ FaceWalk::Crowd const *FaceWalk::FindCrowd(Index face) const {
 }
 
 // A loop of several threads might take up work of its callers, which wait for this.
-void FaceWalk::findNexts() const {
+void FaceWalk::makeArrays() const {
+    constexpr int kMinFaces = 3;
     std::vector<Index> places(_level.faceVerts.size()); // by corner
     for (std::size_t place = 0; place < places.size(); ++place) {
         places[std::size_t(_level.GetVertexCorner(Index(place)))] = Index(place);
     }
-    std::vector<Next> nexts(places.size());
+    Arrays arrays;
+    arrays.nexts.resize(places.size());
     for (Index face = 0; face < _level.numFaces; ++face) {
         Index const end = _level.faceFirstCorner[face + 1];
         Index before = end - 1;
         for (Index corner = _level.faceFirstCorner[face]; corner < end; before = corner++) {
-            nexts[std::size_t(places[std::size_t(before)])] = {_level.faceVerts[corner],
-                                                               places[std::size_t(corner)]};
+            arrays.nexts[std::size_t(places[std::size_t(before)])] = {_level.faceVerts[corner],
+                                                                      places[std::size_t(corner)]};
         }
     }
-    _nexts = std::move(nexts);
+    arrays.fans.resize(std::size_t(_level.numVertices));
+    for (Index vert = 0; vert < _level.numVertices; ++vert) {
+        int const numFaces = _level.GetNumVertexFaces(vert);
+        bool const isPlain = kMinFaces <= numFaces && numFaces <= kMaxFaces && !IsAtFeature(vert);
+        arrays.fans[std::size_t(vert)] = {_level.vertFirstFace[vert], isPlain ? numFaces : 0};
+    }
+    _arrays = std::move(arrays);
 }
 
 } // namespace OpenSubdivHex::BfrExt::internal

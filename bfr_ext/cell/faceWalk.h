@@ -22,6 +22,18 @@ public:
         Index vert;
         Index place; ///< of that vertex in the same face
     };
+    /// The faces of a vertex.
+    struct Fan {
+        Index first; ///< place
+        int numFaces; ///< 0 where plain faces have no such vertex: at features, and of too few or too many faces
+    };
+    /// What the gatherer goes through.
+    struct Arrays {
+        std::vector<Next> nexts; ///< by place
+        std::vector<Fan> fans;   ///< by vertex
+    };
+    /// Faces of a vertex up to which it is in one of Arrays::fans.
+    static constexpr int kMaxFaces = 255;
 
     /// \param level  it has full topology, and must live as long
     explicit FaceWalk(FarExt::internal::Level const &level)
@@ -49,22 +61,22 @@ public:
     /// The first one among the vertices of a face and their neighbours; null where there is none.
     Crowd const *FindCrowd(Index face) const;
 
-    /// By place; made when it is first asked for, by whichever thread does so.
-    Next const *GetNexts() const {
-        std::call_once(_once, [this] { findNexts(); });
-        return _nexts.data();
+    /// Made when they are first asked for, by whichever thread does so.
+    Arrays const &GetArrays() const {
+        std::call_once(_once, [this] { makeArrays(); });
+        return _arrays;
     }
 
 private:
     void findCrowds();
     Crowd const *findCrowdAt(Index vert) const;
-    void findNexts() const;
+    void makeArrays() const;
 
     FarExt::internal::Level const &_level;
     std::vector<FarExt::internal::VertexMark> const &_marks; // empty where all vertices are plain
     std::vector<Crowd> _crowds;                              // ascending
     mutable std::once_flag _once;
-    mutable std::vector<Next> _nexts;
+    mutable Arrays _arrays;
 };
 
 } // namespace OpenSubdivHex::BfrExt::internal

@@ -2,6 +2,7 @@
 #include "growingPatch.h"
 
 #include <algorithm>
+#include <numeric>
 
 namespace OpenSubdivHex::BfrExt::internal {
 
@@ -12,15 +13,14 @@ void GrowingPatch::Start(int size) {
     }
     _size = _numInner = _numMade = size;
     _keepsFaces = false;
-    _faces.clear();
+    _numFaceBytes = 0;
 }
 
 void GrowingPatch::KeepFaces() {
     _keepsFaces = true;
-    _faces.push_back(std::uint8_t(_size));
-    for (int vert = 0; vert < _size; ++vert) {
-        _faces.push_back(std::uint8_t(vert));
-    }
+    _faces[0] = std::uint8_t(_size);
+    std::iota(_faces + 1, _faces + 1 + _size, std::uint8_t(0));
+    _numFaceBytes = 1 + _size;
 }
 
 bool GrowingPatch::Add(int inner, int numFaces, std::uint8_t const *sizes) {
@@ -118,31 +118,39 @@ bool GrowingPatch::join(int before, int behind) {
 
 // A face at a vertex: that, the one before on the boundary, those made for it, and the one behind, if any.
 void GrowingPatch::keepFace(int vert, int last, int firstMade, int behind) {
-    std::size_t const first = _faces.size();
-    _faces.push_back(0);
-    _faces.push_back(std::uint8_t(vert));
-    _faces.push_back(std::uint8_t(last));
+    std::uint8_t *const face = _faces + _numFaceBytes;
+    std::uint8_t *to = face + 1;
+    *to++ = std::uint8_t(vert);
+    *to++ = std::uint8_t(last);
     for (int made = firstMade; made < _numMade; ++made) {
-        _faces.push_back(std::uint8_t(made));
+        *to++ = std::uint8_t(made);
     }
     if (behind != kNone) {
-        _faces.push_back(std::uint8_t(behind));
+        *to++ = std::uint8_t(behind);
     }
-    _faces[first] = std::uint8_t(_faces.size() - first - 1);
+    face[0] = std::uint8_t(to - face - 1);
+    _numFaceBytes = int(to - _faces);
 }
 
-std::vector<GrowingPatch::Point> GrowingPatch::GetPoints() const {
-    std::vector<Point> points;
-    points.reserve(std::size_t(_numMade - _numInner));
+GrowingPatch::Run *GrowingPatch::GetRuns(Run *runs) const {
+    Run *const begin = runs;
     for (int vert = _size; vert < _numMade; ++vert) {
-        if (isPoint(vert)) {
-            points.push_back(_points[vert]);
+        if (!isPoint(vert)) {
+            continue;
+        }
+        Point const &point = _points[vert];
+        Run *const last = runs - 1;
+        if (runs != begin && point.vert == last->first.vert && point.place == last->first.place &&
+            point.corner == last->first.corner + last->numPoints) {
+            ++last->numPoints;
+        } else {
+            *runs++ = {point, 1};
         }
     }
-    return points;
+    return runs;
 }
 
-std::vector<std::uint8_t> GrowingPatch::GetFaces() const {
+void GrowingPatch::GetFaces(std::vector<int> &sizes, std::vector<int> &verts) const {
     int numbers[kMaxVerts] = {};
     int numPoints = 0;
     for (int vert = 0; vert < _numMade; ++vert) {
@@ -150,18 +158,18 @@ std::vector<std::uint8_t> GrowingPatch::GetFaces() const {
                         : isPoint(vert) ? _numInner + numPoints++
                                         : kNone;
     }
-    auto const getNumber = [&](int vert) {
-        while (_verts[vert].same != kNone) {
-            vert = _verts[vert].same;
+    verts.reserve(std::size_t(_numFaceBytes));
+    sizes.reserve(std::size_t(_numFaceBytes) / 4);
+    for (std::uint8_t const *face = _faces; face != _faces + _numFaceBytes; face += 1 + face[0]) {
+        sizes.push_back(face[0]);
+        for (int i = 1; i <= face[0]; ++i) {
+            int vert = face[i];
+            while (numbers[vert] == kNone) {
+                vert = _verts[vert].same;
+            }
+            verts.push_back(numbers[vert]);
         }
-        return std::uint8_t(numbers[vert]);
-    };
-    std::vector<std::uint8_t> faces = _faces;
-    for (std::size_t i = 0; i < faces.size(); i += 1 + faces[i]) {
-        auto const first = faces.begin() + std::ptrdiff_t(i) + 1;
-        std::transform(first, first + faces[i], first, getNumber);
     }
-    return faces;
 }
 
 } // namespace OpenSubdivHex::BfrExt::internal

@@ -16,6 +16,7 @@ namespace OpenSubdivHex::BfrExt::internal {
 class GrowingPatch {
 public:
     static constexpr int kMaxInner = 31;
+    static constexpr int kMaxVerts = 256;
 
     /// \brief Where a vertex that is not inner was met: at an inner one, in the face at a place among those
     /// of that vertex, and the corner there, from the inner vertex on.
@@ -35,15 +36,23 @@ public:
     bool Add(int inner, int numFaces, std::uint8_t const *sizes);
 
     int GetNumInner() const { return _numInner; }
-    /// Where the vertices that are not inner were met.
-    std::vector<Point> GetPoints() const;
+    /// Points that were met one behind the other in a face.
+    struct Run {
+        Point first;
+        std::uint8_t numPoints;
+    };
+    /// Writes where the vertices that are not inner were met.
+    /// \return  the end of what was written
+    Run *GetRuns(Run *runs) const;
     /// Has Add() keep the faces; behind Start().
     void KeepFaces();
-    /// The faces that were kept, each with its size and vertices, first the inner ones, then the others.
-    std::vector<std::uint8_t> GetFaces() const;
+    /// The sizes and the vertices of the faces that were kept; inner vertices come before others.
+    void GetFaces(std::vector<int> &sizes, std::vector<int> &verts) const;
 
 private:
-    static constexpr int kMaxVerts = 256;
+    // A face makes a vertex, or is the last of an inner one, and has three more than it makes at most.
+    static constexpr int kMaxFaces = 1 + kMaxInner + kMaxVerts;
+    static constexpr int kMaxFaceBytes = 4 * kMaxFaces + kMaxVerts;
 
     struct Vertex {
         int before; // along the boundary
@@ -72,8 +81,9 @@ private:
     bool _keepsFaces = false;
     int _inner[kMaxInner] = {};
     Vertex _verts[kMaxVerts] = {};
-    Point _points[kMaxVerts] = {}; // by vertex
-    std::vector<std::uint8_t> _faces;
+    Point _points[kMaxVerts] = {};           // by vertex
+    std::uint8_t _faces[kMaxFaceBytes] = {}; // of each its size and vertices
+    int _numFaceBytes = 0;
 };
 
 } // namespace OpenSubdivHex::BfrExt::internal

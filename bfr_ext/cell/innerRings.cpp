@@ -12,7 +12,6 @@
 
 namespace OpenSubdivHex::BfrExt::internal {
 
-using FarExt::internal::LimitPatch;
 using FarExt::internal::Refinement;
 using FarExt::internal::RefinementRules;
 using FarExt::internal::VertexRule;
@@ -31,10 +30,7 @@ constexpr std::size_t kFVerticesOfHexagon = 3;
 // Finds the masks around vertices of a patch, which is refined where one is met for the first time.
 class InnerRings::MaskFinder {
 public:
-    MaskFinder(InnerMasks &masks, LimitPatch const &patch)
-        : _masks(masks), _patch(patch), _corners(patch) {}
-
-    PatchCorners const &GetCorners() const { return _corners; }
+    MaskFinder(InnerMasks &masks, PatchCorners const &corners) : _masks(masks), _corners(corners) {}
 
     // The weights of a vertex, from the corners there.
     Weights const &FindVertex(std::vector<int> const &ring) {
@@ -90,7 +86,8 @@ private:
             std::vector<double> weights;
             CellRules const &ofCells = _masks.GetRules();
             FarExt::internal::UseNextMasks(
-                _patch, ofCells.sdcOptions, ofCells.hexSchemeOptions, ofCells.interpolation,
+                _corners.GetPatch(), ofCells.sdcOptions, ofCells.hexSchemeOptions,
+                ofCells.interpolation,
                 [&](Refinement const &refinement, RefinementRules const &rules) {
                     weights = make(refinement, rules);
                 });
@@ -136,15 +133,15 @@ private:
     }
 
     InnerMasks &_masks;
-    LimitPatch const &_patch;
-    PatchCorners const _corners;
+    PatchCorners const &_corners;
 };
 
-bool InnerRings::Init(LimitPatch const &patch, std::vector<int> const &corners, InnerMasks &masks) {
-    MaskFinder finder(masks, patch);
+bool InnerRings::Init(PatchCorners const &ofPatch, std::vector<int> const &corners,
+                      InnerMasks &masks) {
+    MaskFinder finder(masks, ofPatch);
     std::vector<int> ring;
     for (int const first : corners) {
-        if (!finder.GetCorners().FindRing(first, ring) || ring.size() > kMaxFaces) {
+        if (!ofPatch.FindRing(first, ring) || ring.size() > kMaxFaces) {
             return false;
         }
         Center center = {&finder.FindVertex(ring), &finder.FindFVertex(ring), {}};
@@ -152,7 +149,7 @@ bool InnerRings::Init(LimitPatch const &patch, std::vector<int> const &corners, 
         int before = ring.back();
         for (int const corner : ring) {
             center.spokes.push_back({&finder.FindHexagon(ring, corner, before),
-                                     &finder.FindFace(finder.GetCorners().GetFaceSize(corner))});
+                                     &finder.FindFace(ofPatch.GetFaceSize(corner))});
             before = corner;
         }
         _rings.push_back(std::move(center));

@@ -11,6 +11,8 @@
 
 namespace OpenSubdivHex::BfrExt::internal {
 
+class PatchCorners;
+
 /// \brief The masks of the second step around vertices of the base mesh, which with FaceMask::Smooth depend on
 /// how many faces the ends of edges have.
 ///
@@ -68,8 +70,7 @@ public:
     ///
     /// \return  false around vertices of more than kMaxFaces, whose faces make the second step by themselves;
     ///          plain base faces have none
-    bool Init(FarExt::internal::LimitPatch const &patch, std::vector<int> const &corners,
-              InnerMasks &masks);
+    bool Init(PatchCorners const &ofPatch, std::vector<int> const &corners, InnerMasks &masks);
 
     /// \brief Writes their points behind those of the first step, where the vertices of the rings from all
     /// faces on are there already.

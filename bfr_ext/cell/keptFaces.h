@@ -2,6 +2,9 @@
 #ifndef OPENSUBDIVHEX_BFR_EXT_CELL_KEPT_FACES_H
 #define OPENSUBDIVHEX_BFR_EXT_CELL_KEPT_FACES_H
 
+#include "byteBlocks.h"
+#include "memoryCount.h"
+
 #include <opensubdiv/far/types.h>
 
 #include <algorithm>
@@ -74,8 +77,9 @@ public:
 
     /// \param numKinds   of data, each of which has points of its own
     /// \param maxMemory  in bytes; what would take more is not kept
-    KeptFaces(int numFaces, std::size_t numKinds, std::size_t maxMemory)
-        : _numFaces(numFaces), _maxMemory(maxMemory), _kinds(numKinds) {}
+    /// \param memory     counts what the faces take
+    KeptFaces(int numFaces, std::size_t numKinds, std::size_t maxMemory, MemoryCount &memory)
+        : _numFaces(numFaces), _maxMemory(maxMemory), _memory(memory), _kinds(numKinds) {}
     KeptFaces(KeptFaces const &) = delete;
     KeptFaces &operator=(KeptFaces const &) = delete;
 
@@ -115,10 +119,12 @@ public:
             return found;
         }
         std::size_t const count = std::size_t(own.numPoints) + 2 * std::size_t(own.size);
-        auto *const memory = static_cast<std::byte *>(allocate(Face::GetMemory(count)));
-        if (!memory) {
+        std::size_t const size = Face::GetMemory(count);
+        if (!takeMemory(_blocks.GetGrowth(size))) {
+            _isFull.store(true, std::memory_order_relaxed);
             return nullptr;
         }
+        std::byte *const memory = _blocks.Take(size);
         std::copy_n(own.GetPoints(), count, reinterpret_cast<Index *>(memory + sizeof(Face)));
         Face const *const added = &Face::Make(memory, own.type, own.size, count);
         slots[face].store(added, std::memory_order_release);
@@ -134,8 +140,6 @@ private:
         std::unique_ptr<Slot[]> memory;
         std::atomic<bool> isRefused{false}; // there was no memory for the slots
     };
-    // Faces lie in blocks, one behind the other.
-    static constexpr std::size_t kBlockSize = 1 << 16;
 
     // Null where there is no memory.
     Slot *getSlots(std::size_t kind) {
@@ -158,38 +162,19 @@ private:
             return false;
         }
         _numBytes += size;
+        _memory.Add(size);
         return true;
-    }
-
-    void *allocate(std::size_t size) {
-        size = (size + alignof(Face) - 1) / alignof(Face) * alignof(Face);
-        if (size > _numLeft) {
-            std::size_t const blockSize = std::max(size, kBlockSize);
-            if (!takeMemory(blockSize)) {
-                _isFull.store(true, std::memory_order_relaxed);
-                return nullptr;
-            }
-            // Not written before it is used.
-            _blocks.emplace_back(new std::byte[blockSize]);
-            _next = _blocks.back().get();
-            _numLeft = blockSize;
-        }
-        void *const result = _next;
-        _next += size;
-        _numLeft -= size;
-        return result;
     }
 
     int const _numFaces;
     std::size_t const _maxMemory;
+    MemoryCount &_memory;
     Face const _metOnce{}; // whose address stands for faces that are not kept yet
     std::mutex _mutex;
     std::vector<Kind> _kinds;
     std::atomic<bool> _isFull{false}; // there was no memory for more faces
     std::size_t _numBytes = 0;
-    std::vector<std::unique_ptr<std::byte[]>> _blocks;
-    std::byte *_next = nullptr;
-    std::size_t _numLeft = 0;
+    ByteBlocks _blocks{1 << 16}; // of faces
 };
 
 } // namespace OpenSubdivHex::BfrExt::internal

@@ -3,6 +3,7 @@
 #define OPENSUBDIVHEX_BFR_EXT_CELL_PATCH_CORNERS_H
 
 #include "far_ext/limit/limitPatch.h"
+#include "far_ext/rules/quadPath.h"
 
 #include <cstddef>
 #include <vector>
@@ -23,6 +24,7 @@ public:
         }
     }
 
+    FarExt::internal::LimitPatch const &GetPatch() const { return _patch; }
     int GetFaceSize(int corner) const { return _faces[std::size_t(corner)].size; }
     int GetVertex(int corner) const { return _patch.faceVerts[std::size_t(corner)]; }
     /// So many places further on in the face, at most its size.
@@ -46,6 +48,16 @@ public:
             }
         } while (corner != first);
         return true;
+    }
+
+    /// FarExt::internal::FindQuadFlag() of the vertex of a corner; 0 where that has a boundary.
+    /// \param ring  scratch
+    int FindFlag(int corner, std::vector<int> &ring) const {
+        if (!FindRing(corner, ring)) {
+            return 0;
+        }
+        return FarExt::internal::FindQuadFlag(
+            int(ring.size()), [&](int i) { return GetFaceSize(ring[std::size_t(i)]); });
     }
 
 private:

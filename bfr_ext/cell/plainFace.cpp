@@ -5,6 +5,10 @@
 
 #include <algorithm>
 #include <cstring>
+#include <new>
+#include <numeric>
+#include <type_traits>
+#include <utility>
 
 namespace OpenSubdivHex::BfrExt::internal {
 
@@ -15,8 +19,6 @@ using FarExt::internal::Level;
 namespace {
 
 constexpr int kTriangle = 3;
-constexpr int kLeastFaces = 3;
-constexpr int kEndOfBytes = 256;
 // In the first byte of a key: that the sizes of faces come behind the rest.
 constexpr int kHasSizes = 0x80;
 
@@ -57,7 +59,10 @@ std::size_t PlainFaceKey::GetHash() const {
     std::uint64_t hash = _size;
     for (std::size_t i = 0; i < _size; i += kWord) {
         std::uint64_t word = 0;
-        std::memcpy(&word, _bytes + i, std::min(kWord, _size - i));
+        std::memcpy(&word, _bytes + i, kWord);
+        if (_size - i < kWord) { // the rest is of other keys
+            word &= (std::uint64_t(1) << 8 * (_size - i)) - 1;
+        }
         hash = (hash ^ word) * 0x9e3779b97f4a7c15;
         hash ^= hash >> 29;
     }
@@ -65,16 +70,31 @@ std::size_t PlainFaceKey::GetHash() const {
 }
 
 PlainFaceType::PlainFaceType(PlainFaceTypes &types, PlainFaceKey const &key, int numVerts,
-                             GrowingPatch const &patch)
-    : hash(key.GetHash()), _types(types), _key(key.GetBytes(), key.GetBytes() + key.GetSize()),
-      _numVerts(numVerts), _points(patch.GetPoints()), _isInLattice(isInLattice(key, numVerts)),
-      _latticeItems(types._types.GetMemory()) {}
+                             int numRuns, int numOthers)
+    : hash(key.GetHash()), _types(types), _keySize(key.GetSize()), _numVerts(numVerts),
+      _numRuns(numRuns), _numOthers(numOthers), _isInLattice(isInLattice(key, numVerts)) {}
+
+PlainFaceType const *PlainFaceType::Make(PlainFaceTypes &types, PlainFaceKey const &key,
+                                         int numVerts, GrowingPatch const &patch,
+                                         ByteBlocks &blocks) {
+    static_assert(alignof(Run) == 1 && std::is_trivially_copyable_v<Run>);
+    Run runs[GrowingPatch::kMaxVerts];
+    Run const *const end = patch.GetRuns(runs);
+    auto const sizeOfRuns = std::size_t(end - runs) * sizeof(Run);
+    std::byte *const memory = blocks.Take(sizeof(PlainFaceType) + key.GetSize() + sizeOfRuns);
+    std::byte *const bytes = memory + sizeof(PlainFaceType);
+    std::memcpy(bytes, key.GetBytes(), key.GetSize());
+    std::memcpy(bytes + key.GetSize(), runs, sizeOfRuns);
+    int const numOthers =
+        std::accumulate(static_cast<Run const *>(runs), end, 0,
+                        [](int count, Run const &run) { return count + run.numPoints; });
+    return new (memory) PlainFaceType(types, key, numVerts, int(end - runs), numOthers);
+}
 
 PlainFaceType::~PlainFaceType() { delete _rings.load(); }
 
 bool PlainFaceType::HasKey(PlainFaceKey const &key) const {
-    return key.GetSize() == _key.size() &&
-           std::memcmp(key.GetBytes(), _key.data(), _key.size()) == 0;
+    return key.GetSize() == _keySize && std::memcmp(key.GetBytes(), getKey(), _keySize) == 0;
 }
 
 // A vertex has its neighbours in the patch.
@@ -82,8 +102,7 @@ static_assert(PlainFaceKey::kMaxVerts <= InnerRings::kMaxFaces);
 
 // If several threads do so at once, the first one makes it for all.
 FaceRings const &PlainFaceType::makeRings() const {
-    auto rings = std::make_unique<FaceRings const>(makeCell(false),
-                                                   _types._types.GetRingCells(_types._rules));
+    auto rings = std::make_unique<FaceRings const>(makeCell(false), _types._ringCells);
     FaceRings const *expected = nullptr;
     if (_rings.compare_exchange_strong(expected, rings.get(), std::memory_order_acq_rel)) {
         _types._types.GetMemory().Add(internal::GetHeapSize(rings));
@@ -94,7 +113,7 @@ FaceRings const &PlainFaceType::makeRings() const {
 
 // Threads that do so at once find the same.
 CellType const &PlainFaceType::make() const {
-    CellType const &type = _types._types.Find(makeCell(true), _types._rules);
+    CellType const &type = _types._types.Find(makeCell(true), _types._ringCells.GetRules());
     if (!_type.exchange(&type, std::memory_order_acq_rel)) {
         --_types._numUnmade;
     }
@@ -102,20 +121,13 @@ CellType const &PlainFaceType::make() const {
 }
 
 CellPatch PlainFaceType::makeCell(bool hasSignature) const {
-    GrowingPatch patch;
-    patch.Start(getFaceSize(_key.data()));
+    static thread_local GrowingPatch patch;
+    patch.Start(getFaceSize(getKey()));
     patch.KeepFaces();
-    grow(_key.data(), _numVerts, patch);
-    std::vector<std::uint8_t> const faces = patch.GetFaces();
+    grow(getKey(), _numVerts, patch);
     std::vector<int> faceSizes;
     std::vector<Far::Index> faceVerts;
-    faceSizes.reserve(faces.size());
-    faceVerts.reserve(faces.size());
-    for (std::size_t i = 0; i < faces.size(); i += 1 + faces[i]) {
-        faceSizes.push_back(faces[i]);
-        auto const first = faces.begin() + std::ptrdiff_t(i) + 1;
-        faceVerts.insert(faceVerts.end(), first, first + faces[i]);
-    }
+    patch.GetFaces(faceSizes, faceVerts);
     return FarExt::internal::MakePlainBaseCell(std::move(faceSizes), std::move(faceVerts),
                                                _numVerts, GetNumPoints(), hasSignature);
 }
@@ -174,14 +186,13 @@ CellType::BorderItem PlainFaceType::makeLatticeItem(CellPatch const &cell, int c
                                                     std::size_t item) const {
     auto const numEdges = std::size_t(cell.GetNumCorners());
     bool const isEdge = item < numEdges;
-    LatticeItem const &lattice =
-        _types._types.GetRingCells(_types._rules)
-            .FindLatticeItem(isEdge ? CellKind::Edge : CellKind::Vertex, cell.GetNumCorners(), [&] {
-                CellPatch patch =
-                    std::move(GatherBorder(cell, turns, _types._rules.sdcOptions)[item]);
-                CellType const &type = _types._types.Find(CellPatch(patch), _types._rules);
-                return LatticeItem{std::move(patch), &type};
-            });
+    CellRules const &rules = _types._ringCells.GetRules();
+    LatticeItem const &lattice = _types._ringCells.FindLatticeItem(
+        isEdge ? CellKind::Edge : CellKind::Vertex, cell.GetNumCorners(), [&] {
+            CellPatch patch = std::move(GatherBorder(cell, turns, rules.sdcOptions)[item]);
+            CellType const &type = _types._types.Find(CellPatch(patch), rules);
+            return LatticeItem{std::move(patch), &type};
+        });
     // The corner of the face, or of another one, that is the first of the item.
     PatchCorners const corners(cell.patch);
     auto corner = int(isEdge ? item : item - numEdges);
@@ -198,7 +209,8 @@ CellType::BorderItem PlainFaceType::makeLatticeItem(CellPatch const &cell, int c
 CellType::BorderItem const &PlainFaceType::GetLatticeItem(int const *turns,
                                                           std::size_t item) const {
     auto const get = [&](std::size_t i, auto const &make) -> CellType::BorderItem const & {
-        return _latticeItems.Get<CellType::BorderItem>(int(i), turns + i, turns + i + 1, make);
+        return GetRings().GetLatticeItems().Get<CellType::BorderItem>(int(i), turns + i,
+                                                                      turns + i + 1, make);
     };
     return get(item, [&] {
         CellPatch const cell = makeCell(false);
@@ -218,105 +230,94 @@ CellType::BorderItem const &PlainFaceType::GetLatticeItem(int const *turns,
 
 PlainFaceType const &PlainFaceTypes::Add(PlainFaceKey const &key, int numVerts,
                                          GrowingPatch const &patch) {
-    auto const [type, isNew] =
-        _entries.Add(std::make_unique<PlainFaceType const>(*this, key, numVerts, patch),
-                     [&](PlainFaceType const &other) { return other.HasKey(key); });
+    decltype(_entries)::Pointer made;
+    {
+        std::lock_guard<std::mutex> const lock(_mutex);
+        made.reset(PlainFaceType::Make(*this, key, numVerts, patch, _blocks));
+    }
+    auto const [type, isNew] = _entries.Add(
+        std::move(made), [&](PlainFaceType const &other) { return other.HasKey(key); });
     if (isNew) {
         ++_numUnmade;
-        _types.GetMemory().Add(decltype(_entries)::kEntrySize + type->GetHeapSize());
+        _types.GetMemory().Add(decltype(_entries)::kEntrySize + type->GetSizeOfBytes());
     }
     return *type;
 }
 
-// The faces of a vertex begin with the one at a place, or so many behind it.
-bool PlainFaceGatherer::addVertex(FaceWalk const &walk, Index vert, Index place, int turn) {
-    Level const &level = walk.GetLevel();
-    Index const first = level.vertFirstFace[vert];
-    int const numFaces = level.vertFirstFace[vert + 1] - first;
-    if (_numVerts == PlainFaceKey::kMaxVerts || numFaces < kLeastFaces || numFaces >= kEndOfBytes ||
-        walk.IsAtFeature(vert)) {
-        return false;
-    }
-    int const begin = place - first + turn;
-    _verts[_numVerts++] = {vert, first, begin < numFaces ? begin : begin - numFaces, numFaces};
-    return true;
-}
-
 // The vertices of the face and then, around one after the other, their neighbours: where the face across
 // an edge is a triangle, the ends of the edge have a neighbour in common.
-bool PlainFaceGatherer::findVertices(FaceWalk const &walk, Index face) {
-    Level const &level = walk.GetLevel();
-    _faceSize = level.GetFaceSize(face);
-    _numVerts = 0;
+bool PlainFaceGatherer::findVertices(Level const &level, Index face) {
+    FaceWalk::Next const *const nexts = _nexts;
+    FaceWalk::Fan const *const fans = _fans;
+    int const size = level.GetFaceSize(face);
+    Vertex *end = _verts;
+    // The faces of a vertex begin with the one at a place, or so many behind it.
+    auto const addVertex = [&](FaceWalk::Next const &next, int turn) {
+        FaceWalk::Fan const fan = fans[next.vert];
+        if (fan.numFaces == 0 || end == _verts + PlainFaceKey::kMaxVerts) {
+            return false;
+        }
+        int const begin = next.place - fan.first + turn;
+        *end++ = {next.vert, fan.first, begin < fan.numFaces ? begin : 0, fan.numFaces};
+        return true;
+    };
     FaceWalk::Next center = {level.faceVerts[level.faceFirstCorner[face]], 0};
     center.place = level.vertFirstFace[center.vert];
     // A face that has the vertex twice is found to be none that is plain.
     while (level.vertFaces[center.place] != face || level.vertFaceLocals[center.place] != 0) {
         ++center.place;
     }
-    for (int i = 0; i < _faceSize; ++i) {
-        if (!addVertex(walk, center.vert, center.place, 0)) {
+    for (int i = 0; i < size; ++i) {
+        if (!addVertex(center, 0)) {
             return false;
         }
-        center = _nexts[center.place];
+        center = nexts[center.place];
     }
     bool const mayBeTriangles = level.faceSizes.front() == kTriangle;
     auto const isTriangle = [&](Index place) {
         return mayBeTriangles && getFaceSize(level, place) == kTriangle;
     };
-    for (int i = 0; i < _faceSize; ++i) {
-        Vertex const &at = _verts[i];
+    for (int i = 0; i < size; ++i) {
+        Vertex const at = _verts[i];
         // The first two are neighbours in the face.
-        int begin = 2;
-        int end = at.numFaces;
-        if (i > 0 && isTriangle(at.GetPlace(1))) {
-            ++begin;
-        }
-        if (i + 1 == _faceSize && isTriangle(at.GetPlace(end - 1))) {
-            --end;
-        }
-        for (int k = begin; k < end; ++k) {
-            FaceWalk::Next const &neighbor = _nexts[at.GetPlace(k)];
-            if (!addVertex(walk, neighbor.vert, neighbor.place, 1)) {
+        bool const isFirstCommon = i > 0 && isTriangle(at.GetPlace(1));
+        bool const isLastCommon = i + 1 == size && isTriangle(at.GetPlace(at.numFaces - 1));
+        for (int k = isFirstCommon ? 3 : 2; k < at.numFaces - (isLastCommon ? 1 : 0); ++k) {
+            if (!addVertex(nexts[at.GetPlace(k)], 1)) {
                 return false;
             }
         }
     }
+    _faceSize = size;
+    _numVerts = int(end - _verts);
+    _key.Clear();
+    _key.Add(size);
+    std::for_each(_verts, end, [&](Vertex const &vert) { _key.Add(vert.numFaces); });
     return true;
 }
 
-bool PlainFaceGatherer::findKey(Level const &level) {
-    _key.Clear();
-    _key.Add(_faceSize);
-    int numSizes = 0;
-    for (int i = 0; i < _numVerts; ++i) {
-        _key.Add(_verts[i].numFaces);
-        numSizes += _verts[i].numFaces;
-    }
-    if (level.faceSizes.size() == 1) {
-        return true;
-    }
-    if (_key.IsFull(numSizes)) {
-        return false;
-    }
-    PlainFaceKey key;
-    key.Add(_faceSize | kHasSizes);
-    for (int i = 0; i < _numVerts; ++i) {
-        key.Add(_verts[i].numFaces);
-    }
+// Adds the sizes of faces to the key, where they differ; false where they are too many or too large.
+bool PlainFaceGatherer::addSizes(Level const &level) {
+    std::size_t const size = _key.GetSize();
     bool hasSizes = false;
     for (int i = 0; i < _numVerts; ++i) {
-        for (int k = 0; k < _verts[i].numFaces; ++k) {
-            int const size = getFaceSize(level, _verts[i].GetPlace(k));
-            if (size >= kHasSizes) {
+        Vertex const &vert = _verts[i];
+        if (_key.IsFull(vert.numFaces)) {
+            return false;
+        }
+        for (int k = 0; k < vert.numFaces; ++k) {
+            int const faceSize = getFaceSize(level, vert.GetPlace(k));
+            if (faceSize >= kHasSizes) {
                 return false;
             }
-            hasSizes = hasSizes || size != _faceSize;
-            key.Add(size);
+            hasSizes = hasSizes || faceSize != _faceSize;
+            _key.Add(faceSize);
         }
     }
     if (hasSizes) {
-        _key = key;
+        _key.SetFirst(_faceSize | kHasSizes);
+    } else {
+        _key.Truncate(size);
     }
     return true;
 }
@@ -337,7 +338,7 @@ bool PlainFaceGatherer::areDistinct(Index const *points, int numPoints) {
         return true;
     }
     // Others may end with the same digits.
-    Index sorted[kEndOfBytes];
+    Index sorted[GrowingPatch::kMaxVerts];
     std::copy_n(points, numPoints, sorted);
     std::sort(sorted, sorted + numPoints);
     return std::adjacent_find(sorted, sorted + numPoints) == sorted + numPoints;
@@ -348,12 +349,16 @@ void PlainFaceGatherer::writePoints(PlainFaceType const &type, Index *points) co
     for (int i = 0; i < _numVerts; ++i) {
         *points++ = _verts[i].vert;
     }
-    for (PlainFaceType::Point const &point : type.GetPoints()) {
-        FaceWalk::Next const *next = &_nexts[_verts[point.vert].GetPlace(point.place)];
-        for (int corner = 1; corner < point.corner; ++corner) {
+    for (PlainFaceType::Run const *run = type.GetRuns(); run != type.GetEndOfRuns(); ++run) {
+        FaceWalk::Next const *next = &_nexts[_verts[run->first.vert].GetPlace(run->first.place)];
+        for (int corner = 1; corner < run->first.corner; ++corner) {
             next = &_nexts[next->place];
         }
         *points++ = next->vert;
+        for (int i = 1; i < run->numPoints; ++i) {
+            next = &_nexts[next->place];
+            *points++ = next->vert;
+        }
     }
 }
 
@@ -369,8 +374,10 @@ void PlainFaceGatherer::writeTurns(Level const &level, Index face, Index *turns)
 
 PlainFaceType const *PlainFaceGatherer::findType(PlainFaceTypes &types, FaceWalk const &walk,
                                                  Index face) {
-    _nexts = walk.GetNexts();
-    if (!findVertices(walk, face) || !findKey(walk.GetLevel())) {
+    Level const &level = walk.GetLevel();
+    _nexts = walk.GetArrays().nexts.data();
+    _fans = walk.GetArrays().fans.data();
+    if (!findVertices(level, face) || (level.faceSizes.size() > 1 && !addSizes(level))) {
         return nullptr;
     }
     if (PlainFaceType const *const type = types.Find(_key, _key.GetHash())) {

@@ -2,6 +2,7 @@
 #ifndef OPENSUBDIVHEX_BFR_EXT_CELL_PLAIN_FACE_H
 #define OPENSUBDIVHEX_BFR_EXT_CELL_PLAIN_FACE_H
 
+#include "byteBlocks.h"
 #include "cellType.h"
 #include "faceWalk.h"
 #include "growingPatch.h"
@@ -10,7 +11,7 @@
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
-#include <vector>
+#include <mutex>
 
 namespace OpenSubdivHex::BfrExt::internal {
 
@@ -30,6 +31,9 @@ public:
     void Add(int number) { _bytes[_size++] = std::uint8_t(number); }
     /// Whether so many numbers more are too many.
     bool IsFull(int number) const { return _size + std::size_t(number) > kMaxSize; }
+    void SetFirst(int number) { _bytes[0] = std::uint8_t(number); }
+    /// Leaves so many numbers.
+    void Truncate(std::size_t size) { _size = size; }
 
     std::uint8_t const *GetBytes() const { return _bytes; }
     std::size_t GetSize() const { return _size; }
@@ -44,12 +48,14 @@ private:
 /// surface is made but not evaluated needs none.
 class PlainFaceType {
 public:
-    using Point = GrowingPatch::Point;
+    using Run = GrowingPatch::Run;
 
+    /// Makes one in blocks, in which its bytes lie behind it.
+    ///
     /// \param numVerts  all of whose faces are in the patch
     /// \param patch     that of the key
-    PlainFaceType(PlainFaceTypes &types, PlainFaceKey const &key, int numVerts,
-                  GrowingPatch const &patch);
+    static PlainFaceType const *Make(PlainFaceTypes &types, PlainFaceKey const &key, int numVerts,
+                                     GrowingPatch const &patch, ByteBlocks &blocks);
     ~PlainFaceType();
     PlainFaceType(PlainFaceType const &) = delete;
     PlainFaceType &operator=(PlainFaceType const &) = delete;
@@ -57,10 +63,13 @@ public:
     std::size_t const hash; ///< of the key
 
     bool HasKey(PlainFaceKey const &key) const;
-    std::size_t GetHeapSize() const { return GetHeapSizes(_key, _points); }
-    int GetNumPoints() const { return _numVerts + int(_points.size()); }
-    /// Those behind the vertices whose faces are all there.
-    std::vector<Point> const &GetPoints() const { return _points; }
+    /// Of the key and the points.
+    std::size_t GetSizeOfBytes() const { return _keySize + std::size_t(_numRuns) * sizeof(Run); }
+    int GetNumPoints() const { return _numVerts + _numOthers; }
+    /// The points behind the vertices whose faces are all there.
+    Run const *GetRuns() const { return reinterpret_cast<Run const *>(getKey() + _keySize); }
+    /// The end of these.
+    Run const *GetEndOfRuns() const { return GetRuns() + _numRuns; }
     /// The type that evaluates the points, made on demand.
     CellType const &Get() const {
         CellType const *const type = _type.load(std::memory_order_acquire);
@@ -78,6 +87,10 @@ public:
     CellType::BorderItem const &GetLatticeItem(int const *turns, std::size_t item) const;
 
 private:
+    PlainFaceType(PlainFaceTypes &types, PlainFaceKey const &key, int numVerts, int numRuns,
+                  int numOthers);
+
+    std::uint8_t const *getKey() const { return reinterpret_cast<std::uint8_t const *>(this + 1); }
     CellType const &make() const;
     FaceRings const &makeRings() const;
     FarExt::internal::CellPatch makeCell(bool hasSignature) const;
@@ -85,19 +98,20 @@ private:
                                          std::size_t item) const;
 
     PlainFaceTypes &_types;
-    std::vector<std::uint8_t> const _key;
+    // Behind this there are the key, and the runs of other points.
+    std::size_t const _keySize;
     int const _numVerts;
-    std::vector<Point> const _points;
+    int const _numRuns;
+    int const _numOthers;
     bool const _isInLattice;
     mutable std::atomic<FaceRings const *> _rings{nullptr};
     mutable std::atomic<CellType const *> _type{nullptr};
-    mutable PatternTable _latticeItems; // by item and turn
 };
 
 /// The types of plain base faces that have been met with some rules.  Any number of threads may use them.
 class PlainFaceTypes {
 public:
-    PlainFaceTypes(CellTypes &types, CellRules const &rules) : _types(types), _rules(rules) {}
+    PlainFaceTypes(CellTypes &types, RingCells &ringCells) : _types(types), _ringCells(ringCells) {}
 
     /// Null where there is none.
     PlainFaceType const *Find(PlainFaceKey const &key, std::size_t hash) const {
@@ -110,9 +124,15 @@ public:
 private:
     friend class PlainFaceType;
 
+    struct Destroy {
+        void operator()(PlainFaceType const *type) const { type->~PlainFaceType(); }
+    };
+
     CellTypes &_types;
-    CellRules const _rules;
-    EntryTable<PlainFaceType> _entries;
+    RingCells &_ringCells;
+    std::mutex _mutex;
+    ByteBlocks _blocks{1 << 12};
+    EntryTable<PlainFaceType, Destroy> _entries;
     std::atomic<std::size_t> _numUnmade{0};
 };
 
@@ -155,9 +175,8 @@ private:
     PlainFaceType const *findType(PlainFaceTypes &types, FaceWalk const &walk, Index face);
     bool writeFace(FarExt::internal::Level const &level, Index face, PlainFaceType const &type,
                    Index *points);
-    bool addVertex(FaceWalk const &walk, Index vert, Index place, int turn);
-    bool findVertices(FaceWalk const &walk, Index face);
-    bool findKey(FarExt::internal::Level const &level);
+    bool findVertices(FarExt::internal::Level const &level, Index face);
+    bool addSizes(FarExt::internal::Level const &level);
     void writePoints(PlainFaceType const &type, Index *points) const;
     void writeTurns(FarExt::internal::Level const &level, Index face, Index *turns) const;
     bool areDistinct(Index const *points, int numPoints);
@@ -165,6 +184,7 @@ private:
     static constexpr std::size_t kNumStamps = 4096;
 
     FaceWalk::Next const *_nexts = nullptr; // of the level
+    FaceWalk::Fan const *_fans = nullptr;
     int _faceSize = 0;
     int _numVerts = 0;
     Vertex _verts[PlainFaceKey::kMaxVerts] = {};

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ringCell.h"
 
+#include "patchCorners.h"
+
 #include <algorithm>
 #include <cassert>
-#include <numeric>
 #include <optional>
 
 namespace OpenSubdivHex::BfrExt::internal {
@@ -19,13 +20,6 @@ using Cell = std::pair<CellPatch, std::vector<RingLayout>>;
 // The place of the vertex of a ring; others are behind the begin of the block of face 0.
 constexpr int kRingCenter = -1;
 
-// Vertices of the face that a patch is made for come first.
-std::vector<int> getCorners(int numCorners) {
-    std::vector<int> corners(static_cast<std::size_t>(numCorners));
-    std::iota(corners.begin(), corners.end(), 0);
-    return corners;
-}
-
 CellRefinement refine(CellPatch const &cell, CellRules const &rules) {
     return RefineCell(cell, rules.sdcOptions, rules.hexSchemeOptions, rules.interpolation);
 }
@@ -40,6 +34,50 @@ std::vector<Far::Index> findStepVertices(CellRefinement const &refinement) {
         }
     }
     return verts;
+}
+
+// Tells the cells that rings of the first step make: the sizes of faces, and the vertices, by when they occur first.
+RingCells::Key findKey(std::vector<RingLayout> const &rings) {
+    RingCells::Key key;
+    std::vector<int> numbers; // by vertex
+    int numVerts = 0;
+    auto const addVertex = [&](int vert) {
+        auto const place = std::size_t(vert);
+        numbers.resize(std::max(numbers.size(), place + 1), -1);
+        if (numbers[place] < 0) {
+            numbers[place] = numVerts++;
+        }
+        key.push_back(numbers[place]);
+    };
+    for (RingLayout const &ring : rings) {
+        key.push_back(int(ring.faceSizes.size()));
+        key.insert(key.end(), ring.faceSizes.begin(), ring.faceSizes.end());
+        addVertex(ring.center);
+        std::for_each(ring.verts.begin(), ring.verts.end(), addVertex);
+        key.insert(key.end(), ring.flags.begin(), ring.flags.end());
+    }
+    return key;
+}
+
+// Tells the rings of a plain base face: the faces at its vertices, which come first in its patch.
+RingCells::Key findKey(CellPatch const &cell, PatchCorners const &corners, bool hasFlags) {
+    int const numEdges = cell.GetNumCorners();
+    RingCells::Key key;
+    std::vector<int> ring;
+    int first = 0;
+    for (int const size : cell.patch.faceSizes) {
+        int const *const verts = &cell.patch.faceVerts[std::size_t(first)];
+        if (std::all_of(verts, verts + size, [&](int vert) { return vert >= numEdges; })) {
+            break;
+        }
+        key.push_back(size);
+        key.insert(key.end(), verts, verts + size);
+        for (int i = 0; hasFlags && i < size; ++i) {
+            key.push_back(corners.FindFlag(first + i, ring));
+        }
+        first += size;
+    }
+    return key;
 }
 
 // Product of the first step of an edge or a vertex.
@@ -110,43 +148,6 @@ std::vector<REAL> const &RingCell::GetVertexWeights() const {
         });
 }
 
-RingKey::RingKey() {
-    // For a triangle with six faces at each vertex.
-    constexpr std::size_t kUsualSize = 128;
-    _numbers.reserve(kUsualSize);
-    _firstOccurrences.resize(kUsualSize, kNone);
-}
-
-RingKey::RingKey(std::vector<RingLayout> const &rings) : RingKey() {
-    std::for_each(rings.begin(), rings.end(), [&](RingLayout const &ring) { Add(ring); });
-}
-
-void RingKey::Clear() {
-    _numbers.clear();
-    std::fill(_firstOccurrences.begin(), _firstOccurrences.end(), kNone);
-    _numVerts = 0;
-}
-
-void RingKey::addVertex(int vert) {
-    auto const place = std::size_t(vert);
-    if (place >= _firstOccurrences.size()) {
-        _firstOccurrences.resize(2 * place + 1, kNone);
-    }
-    int &number = _firstOccurrences[place];
-    if (number == kNone) {
-        number = _numVerts++;
-    }
-    _numbers.push_back(number);
-}
-
-void RingKey::Add(RingLayout const &ring) {
-    _numbers.push_back(int(ring.faceSizes.size()));
-    _numbers.insert(_numbers.end(), ring.faceSizes.begin(), ring.faceSizes.end());
-    addVertex(ring.center);
-    std::for_each(ring.verts.begin(), ring.verts.end(), [&](int vert) { addVertex(vert); });
-    _numbers.insert(_numbers.end(), ring.flags.begin(), ring.flags.end());
-}
-
 void RingPlaces::AddKey(std::vector<int> &key) const {
     key.insert(key.end(), _columns.begin(), _columns.end());
     key.insert(key.end(), _places.begin(), _places.end());
@@ -201,7 +202,8 @@ RingItem const &RingItem::Get(CellType const &type, CellPatch const &patch, Ring
     constexpr int kKind = PatternTable::GetKind<double>(PatternOf::RingItem);
     return type.GetPatterns().Get<RingItem>(kKind, nullptr, nullptr, [&] {
         RingItem item;
-        bool const isPlain = item.rings.Init(patch.patch, patch.locals, cells.GetMasks());
+        bool const isPlain =
+            item.rings.Init(PatchCorners(patch.patch), patch.locals, cells.GetMasks());
         auto const &ofItem = item.rings.GetRings();
         bool const isInLattice = std::all_of(ofItem.begin(), ofItem.end(),
                                              [](Ring const &ring) { return ring.isInLattice; });
@@ -210,37 +212,28 @@ RingItem const &RingItem::Get(CellType const &type, CellPatch const &patch, Ring
         }
         item.cell = &cells.Find(
             getChildKind(patch.kind),
-            RingKey(FindRingLayouts(patch.patch, patch.locals, cells.GetMasks().AreUsed())),
+            findKey(FindRingLayouts(patch.patch, patch.locals, cells.GetMasks().AreUsed())),
             [&] { return makeItemCell(patch, cells.GetRules()); });
         return item;
     });
 }
 
-// Finds the cells of a face.
+// Makes the cells of a face.
 class FaceRings::Maker {
 public:
-    Maker(FaceRings &face, CellPatch const &cell, RingCells &cells)
-        : _face(face), _cell(cell), _cells(cells), _numEdges(cell.GetNumCorners()),
-          _layouts(FindRingLayouts(cell.patch, getCorners(_numEdges), cells.GetMasks().AreUsed())) {
-    }
+    Maker(CellPatch const &cell, RingCells &cells)
+        : _cell(cell), _cells(cells), _numEdges(cell.GetNumCorners()),
+          _layouts(FindRingLayouts(cell.patch, cell.locals, cells.GetMasks().AreUsed())) {}
 
-    void FindCells() {
-        std::for_each(_layouts.begin(), _layouts.end(),
-                      [&](RingLayout const &ring) { _key.Add(ring); });
-        _face._whole = &findChild(CellKind::Whole, _key, 0, 0);
-        _face._edges.reserve(_layouts.size());
-        _face._verts.reserve(_layouts.size());
-        for (int edge = 0; edge < _numEdges; ++edge) {
-            _key.Clear();
-            _key.Add(getLayout(edge));
-            _key.Add(getLayout(edge + 1));
-            _face._edges.push_back(&_cells.FindEdge(_key, [&] { return makeEdge(edge); }));
+    RingFace Make() {
+        RingFace face = {&findChild(CellKind::Whole, findKey(_layouts), 0, 0), {}, {}};
+        for (int i = 0; i < _numEdges; ++i) {
+            face.edges.push_back(makeEdge(i));
+            face.verts.push_back(makeVertex(i));
         }
-        for (int vert = 0; vert < _numEdges; ++vert) {
-            _key.Clear();
-            _key.Add(getLayout(vert));
-            _face._verts.push_back(&_cells.FindVertex(_key, [&] { return makeVertex(vert); }));
-        }
+        face.edges.shrink_to_fit();
+        face.verts.shrink_to_fit();
+        return face;
     }
 
 private:
@@ -260,14 +253,14 @@ private:
         return *_refinement;
     }
 
-    // The key is that of the rings.
     RingEdge makeEdge(int edge) {
         RingLayout const &start = getLayout(edge);
         RingLayout const &end = getLayout(edge + 1);
-        RingCell const &half = findChild(CellKind::Half, _key, std::size_t(edge) + 1, edge);
-        RingCell const &longEdge = findItem(CellKind::LongEdge, _key, edge, 0);
+        RingCells::Key const key = findKey({start, end});
+        RingCell const &half = findChild(CellKind::Half, key, std::size_t(edge) + 1, edge);
+        RingCell const &longEdge = findItem(CellKind::LongEdge, key, edge, 0);
         RingCell const &reversed =
-            findItem(CellKind::LongEdge, RingKey({end.From(1), start.From(-1)}), edge, 1);
+            findItem(CellKind::LongEdge, findKey({end.From(1), start.From(-1)}), edge, 1);
         return {&half, {&longEdge, &reversed}};
     }
 
@@ -277,19 +270,20 @@ private:
         RingVertex result;
         for (int turn = 0; turn < numTurns; ++turn) {
             result.vVertices.push_back(
-                &findItem(CellKind::Vertex, RingKey({ring.From(-turn)}), _numEdges + vert, turn));
+                &findItem(CellKind::Vertex, findKey({ring.From(-turn)}), _numEdges + vert, turn));
         }
         return result;
     }
 
-    RingCell const &findChild(CellKind kind, RingKey const &key, std::size_t child, int firstRing) {
+    RingCell const &findChild(CellKind kind, RingCells::Key const &key, std::size_t child,
+                              int firstRing) {
         return _cells.Find(kind, key, [&] {
             return Cell{getRefinement().children[child], getLayouts(firstRing)};
         });
     }
 
     // By edge, then by vertex.
-    RingCell const &findItem(CellKind kind, RingKey const &key, int item, int turn) {
+    RingCell const &findItem(CellKind kind, RingCells::Key const &key, int item, int turn) {
         return _cells.Find(kind, key, [&] {
             std::vector<int> turns(2 * std::size_t(_numEdges));
             turns[std::size_t(item)] = turn;
@@ -299,21 +293,20 @@ private:
         });
     }
 
-    FaceRings &_face;
     CellPatch const &_cell;
     RingCells &_cells;
     int const _numEdges;
     std::vector<RingLayout> const _layouts;
-    RingKey _key;
     std::optional<CellRefinement> _refinement;
 };
 
-FaceRings::FaceRings(CellPatch const &cell, RingCells &cells) {
-    bool const isPlain =
-        _rings.Init(cell.patch, getCorners(cell.GetNumCorners()), cells.GetMasks());
+FaceRings::FaceRings(CellPatch const &cell, RingCells &cells) : _latticeItems(cells.GetMemory()) {
+    PatchCorners const corners(cell.patch);
+    bool const isPlain = _rings.Init(corners, cell.locals, cells.GetMasks());
     assert(isPlain);
     static_cast<void>(isPlain);
-    Maker(*this, cell, cells).FindCells();
+    _cells = &cells.FindFace(findKey(cell, corners, cells.GetMasks().AreUsed()),
+                             [&] { return Maker(cell, cells).Make(); });
 }
 
 void FaceRings::findIndices(std::size_t child, RingPlaces const &places, RingStep step,

@@ -131,29 +131,6 @@ private:
     mutable PatternTable _patterns;
 };
 
-/// \brief Key of the cells that rings make: the sizes of faces, and the vertices, by when they occur first.
-class RingKey {
-public:
-    /// A key of no rings.
-    RingKey();
-    /// The key of some rings of the first step.
-    explicit RingKey(std::vector<RingLayout> const &rings);
-    void Clear();
-    /// Adds a ring of the first step.
-    void Add(RingLayout const &ring);
-
-    std::vector<int> const &Get() const { return _numbers; }
-
-private:
-    static constexpr int kNone = -1;
-
-    void addVertex(int vert);
-
-    std::vector<int> _numbers;
-    std::vector<int> _firstOccurrences; // by vertex
-    int _numVerts = 0;
-};
-
 /// An edge or a vertex in a lattice, of any face, with its patch.
 struct LatticeItem {
     std::size_t GetHeapSize() const { return GetCellHeapSize(cell); }
@@ -181,37 +158,43 @@ struct RingVertex {
     }
 };
 
+/// Product of the first step of a plain base face.
+struct RingFace {
+    std::size_t GetHeapSize() const { return GetHeapSizes(edges, verts); }
+
+    RingCell const *whole;
+    std::vector<RingEdge> edges;
+    std::vector<RingVertex> verts;
+};
+
 /// The cells of plain base faces with some rules.  Any number of threads may use it.
 class RingCells {
 public:
+    /// Tells rings from others.
+    using Key = std::vector<int>;
+
     RingCells(CellTypes &types, CellRules const &rules)
         : _types(types), _masks(rules, types.GetMemory()), _found(types.GetMemory()),
-          _edges(types.GetMemory()), _vertices(types.GetMemory()),
-          _latticeItems(types.GetMemory()) {}
+          _faces(types.GetMemory()), _latticeItems(types.GetMemory()) {}
 
     CellRules const &GetRules() const { return _masks.GetRules(); }
     InnerMasks &GetMasks() { return _masks; }
+    MemoryCount &GetMemory() { return _types.GetMemory(); }
 
     /// \brief Finds a cell by its kind and the rings that tell what it is.
     ///
     /// \param make  gives the cell and, in vertices of the same level, the rings that have its points
     template <typename MAKE>
-    RingCell const &Find(FarExt::internal::CellKind kind, RingKey const &key, MAKE const &make) {
+    RingCell const &Find(FarExt::internal::CellKind kind, Key const &key, MAKE const &make) {
         return *find<RingCell const *>(_found, int(kind), key, [&]() -> RingCell const * {
             auto [cell, layouts] = make();
             return &find(std::move(cell), layouts);
         });
     }
-    /// \brief Finds what make() gave of an edge whose ends have rings that are told by \p key, that of its
-    /// start before that of its end and both from the face on.
+    /// Finds what make() gave of a face whose vertices have rings that are told by \p key.
     template <typename MAKE>
-    RingEdge const &FindEdge(RingKey const &key, MAKE const &make) {
-        return find<RingEdge>(_edges, 0, key, make);
-    }
-    /// Overload for a vertex, whose ring begins at the face.
-    template <typename MAKE>
-    RingVertex const &FindVertex(RingKey const &key, MAKE const &make) {
-        return find<RingVertex>(_vertices, 0, key, make);
+    RingFace const &FindFace(Key const &key, MAKE const &make) {
+        return find<RingFace>(_faces, 0, key, make);
     }
 
     /// \brief What make() gave first of a kind of items in the lattice of a size of faces: mostly all look like
@@ -227,9 +210,8 @@ public:
 
 private:
     template <typename FOUND, typename MAKE>
-    static FOUND const &find(PatternTable &table, int kind, RingKey const &key, MAKE const &make) {
-        std::vector<int> const &numbers = key.Get();
-        return table.Get<FOUND>(kind, numbers.data(), numbers.data() + numbers.size(), make);
+    static FOUND const &find(PatternTable &table, int kind, Key const &key, MAKE const &make) {
+        return table.Get<FOUND>(kind, key.data(), key.data() + key.size(), make);
     }
     std::unique_ptr<RingCell const> make(FarExt::internal::CellPatch cell,
                                          std::vector<RingLayout> const &rings);
@@ -238,8 +220,7 @@ private:
     CellTypes &_types;
     InnerMasks _masks;
     PatternTable _found; // pointers, by kind and rings
-    PatternTable _edges;
-    PatternTable _vertices;
+    PatternTable _faces;
     PatternTable _latticeItems;
 };
 
@@ -266,18 +247,20 @@ public:
     FaceRings(FarExt::internal::CellPatch const &cell, RingCells &cells);
 
     VertexRings const &GetRings() const { return _rings; }
-    std::size_t GetHeapSize() const { return GetHeapSizes(_rings, _edges, _verts); }
+    /// The edges and vertices that are in a lattice, by item and turn; made on demand.
+    PatternTable &GetLatticeItems() const { return _latticeItems; }
+    std::size_t GetHeapSize() const { return internal::GetHeapSize(_rings); }
     /// Whether a vertex and its neighbours are in a regular lattice, or both vertices of an edge.
     bool IsVertexInLattice(int vert) const {
         return _rings.GetRings()[std::size_t(vert)].isInLattice;
     }
     bool IsEdgeInLattice(int edge) const {
         return IsVertexInLattice(edge) &&
-               IsVertexInLattice(edge + 1 < int(_edges.size()) ? edge + 1 : 0);
+               IsVertexInLattice(edge + 1 < int(_cells->edges.size()) ? edge + 1 : 0);
     }
     /// A child of the face, in the order of RefineCell().
     RingCell const &GetChild(std::size_t child) const {
-        return child == 0 ? *_whole : *_edges[child - 1]->half;
+        return child == 0 ? *_cells->whole : *_cells->edges[child - 1].half;
     }
     /// Writes the indices of what a child has sums of.
     void FindChildIndices(std::size_t child, int *indices) const {
@@ -290,15 +273,16 @@ public:
 
     /// The long edge of an edge, which may run against the face; null where it is in a lattice.
     RingCell const *GetLongEdge(int edge, bool isReversed) const {
-        return IsEdgeInLattice(edge) ? nullptr
-                                     : _edges[std::size_t(edge)]->longEdges[isReversed ? 1 : 0];
+        return IsEdgeInLattice(edge)
+                   ? nullptr
+                   : _cells->edges[std::size_t(edge)].longEdges[isReversed ? 1 : 0];
     }
     /// Writes the indices of a long edge.
     void FindLongEdgeIndices(int edge, bool isReversed, int *indices) const;
 
     /// The V-vertex of a vertex with so many faces before this one; null where it is in a lattice.
     RingCell const *GetVVertex(int vert, int turn) const {
-        return IsVertexInLattice(vert) ? nullptr : &_verts[std::size_t(vert)]->Get(turn);
+        return IsVertexInLattice(vert) ? nullptr : &_cells->verts[std::size_t(vert)].Get(turn);
     }
 
 private:
@@ -308,9 +292,8 @@ private:
                      int *indices) const;
 
     VertexRings _rings;
-    RingCell const *_whole = nullptr;
-    std::vector<RingEdge const *> _edges;
-    std::vector<RingVertex const *> _verts;
+    RingFace const *_cells;
+    mutable PatternTable _latticeItems;
 };
 
 /// The points of rings, evaluated.

@@ -3,8 +3,6 @@
 
 #include "patchCorners.h"
 
-#include "far_ext/rules/quadPath.h"
-
 #include <algorithm>
 #include <array>
 #include <map>
@@ -96,14 +94,8 @@ std::vector<RingLayout> FindRingLayouts(LimitPatch const &patch, std::vector<int
                 layout.verts.push_back(numVerts + ofPatch.GetNext(corner, i));
             }
             if (hasFlags) {
-                bool const isInside = ofPatch.FindRing(ofPatch.GetNext(corner, 1), ringOfNeighbor);
-                layout.flags.push_back(isInside ? FarExt::internal::FindQuadFlag(
-                                                      int(ringOfNeighbor.size()),
-                                                      [&](int i) {
-                                                          return ofPatch.GetFaceSize(
-                                                              ringOfNeighbor[std::size_t(i)]);
-                                                      })
-                                                : 0);
+                layout.flags.push_back(
+                    ofPatch.FindFlag(ofPatch.GetNext(corner, 1), ringOfNeighbor));
             }
         }
         layouts.push_back(std::move(layout));

@@ -44,14 +44,9 @@ class VertexRings::Builder {
 public:
     // Its memory is kept for the next patch.
     struct Scratch {
-        // A point, and which of the runs it belongs to.
-        struct RunPoint {
-            int point;
-            std::size_t run;
-        };
-        struct Run {
+        struct Point {
+            Number point;
             double weight;
-            int numPoints;
         };
 
         std::vector<Number> program;
@@ -60,16 +55,19 @@ public:
         std::vector<int> ring;
         std::vector<int> faceSizes;
         std::vector<int> neighborRing;
-        std::vector<Run> runs;
-        std::vector<RunPoint> points;
+        std::vector<Point> points; // as many as the patch has corners at least
     };
 
-    Builder(VertexRings &rings, LimitPatch const &patch, CellRules const &rules, Scratch &scratch)
-        : _rings(rings), _corners(patch), _rules(rules), _scratch(scratch),
-          _zero(int(patch.sources.size())) {
+    Builder(VertexRings &rings, PatchCorners const &corners, CellRules const &rules,
+            Scratch &scratch)
+        : _rings(rings), _corners(corners), _rules(rules), _scratch(scratch),
+          _zero(int(corners.GetPatch().sources.size())) {
+        _isInRange = std::size_t(_zero) <= kLastNumber;
         _scratch.program.clear();
         _scratch.weights.clear();
         _scratch.masks.clear();
+        _scratch.points.resize(
+            std::max(_scratch.points.size(), corners.GetPatch().faceVerts.size()));
     }
 
     bool Add(int firstCorner) {
@@ -130,10 +128,11 @@ public:
 private:
     static constexpr std::size_t kLastNumber = std::numeric_limits<Number>::max();
 
-    void add(int number) {
+    Number toNumber(int number) {
         _isInRange = _isInRange && std::size_t(number) <= kLastNumber;
-        _scratch.program.push_back(Number(number));
+        return Number(number);
     }
+    void add(int number) { _scratch.program.push_back(toNumber(number)); }
 
     // Whether so many faces meet at a vertex as in a lattice, all of them of its size.
     bool isRegular(std::vector<int> const &corners) const {
@@ -180,60 +179,58 @@ private:
         }
         _isInLattice = _isInLattice && isRegular(corners);
         VertexVertexMask const mask = getVertexMask(corners);
-        auto const getWeight = [&](int firstWeight, int place) {
-            return mask.faceWeight *
-                   _scratch.weights[std::size_t(firstWeight) + std::size_t(place)];
-        };
         double ownWeight = mask.vertexWeight;
-        std::vector<Scratch::Run> &runs = _scratch.runs;
-        std::vector<Scratch::RunPoint> &points = _scratch.points;
-        runs.clear();
-        points.clear();
-        auto const addPoint = [&](int corner, double weight) {
-            std::size_t run = 0;
-            while (run < runs.size() && runs[run].weight != weight) {
-                ++run;
-            }
-            if (run == runs.size()) {
-                runs.push_back({weight, 0});
-            }
-            ++runs[run].numPoints;
-            points.push_back({_corners.GetVertex(corner), run});
-        };
+        Scratch::Point *const points = _scratch.points.data();
+        Scratch::Point *end = points;
         int sizeBefore = _corners.GetFaceSize(corners.back());
         int maskBefore = findMask(sizeBefore);
         for (int const corner : corners) {
             int const size = _corners.GetFaceSize(corner);
-            int const ofFace = findMask(size);
-            ownWeight += getWeight(ofFace, 0);
-            addPoint(_corners.GetNext(corner, 1),
-                     getWeight(ofFace, 1) + getWeight(maskBefore, sizeBefore - 1));
-            for (int i = 2; i + 1 < size; ++i) {
-                addPoint(_corners.GetNext(corner, i), getWeight(ofFace, i));
+            int const ofFace = size == sizeBefore ? maskBefore : findMask(size);
+            double const *const weights = _scratch.weights.data();
+            ownWeight += mask.faceWeight * weights[ofFace];
+            double weight = mask.faceWeight * weights[ofFace + 1] +
+                            mask.faceWeight * weights[maskBefore + sizeBefore - 1];
+            for (int i = 1; i + 1 < size; ++i, ++end) {
+                end->point = Number(_corners.GetVertex(_corners.GetNext(corner, i)));
+                end->weight = weight;
+                weight = mask.faceWeight * weights[ofFace + i + 1];
             }
             sizeBefore = size;
             maskBefore = ofFace;
         }
         add(findWeight(ownWeight));
-        add(int(runs.size()));
-        for (std::size_t run = 0; run < runs.size(); ++run) {
-            add(findWeight(runs[run].weight));
-            int const numSteps = (runs[run].numPoints + int(kRunStep) - 1) / int(kRunStep);
-            add(numSteps);
-            for (Scratch::RunPoint const &point : points) {
-                if (point.run == run) {
-                    add(point.point);
+        // Runs of the weight of the first point that is left.
+        std::vector<Number> &program = _scratch.program;
+        std::size_t const first = program.size();
+        program.resize(first + 1 + std::size_t(end - points) * (kRunHeaderSize + kRunStep));
+        Number &numRuns = program[first];
+        Number *to = &numRuns + 1;
+        for (; end != points; ++numRuns) {
+            double const weight = points->weight;
+            Number *const run = to;
+            run[kRunWeight] = toNumber(findWeight(weight));
+            to += kRunHeaderSize;
+            Scratch::Point *rest = points;
+            for (Scratch::Point const *point = points; point != end; ++point) {
+                if (point->weight == weight) {
+                    *to++ = point->point;
+                } else {
+                    *rest++ = *point;
                 }
             }
-            for (int i = runs[run].numPoints; i < numSteps * int(kRunStep); ++i) {
-                add(_zero);
+            end = rest;
+            while (std::size_t(to - run - kRunHeaderSize) % kRunStep != 0) {
+                *to++ = Number(_zero);
             }
+            run[kNumSteps] = Number(std::size_t(to - run - kRunHeaderSize) / kRunStep);
         }
+        program.resize(std::size_t(to - program.data()));
         return true;
     }
 
     VertexRings &_rings;
-    PatchCorners const _corners;
+    PatchCorners const &_corners;
     CellRules const &_rules;
     Scratch &_scratch;
     int const _zero; // the point behind those of the patch
@@ -243,13 +240,13 @@ private:
     bool _isInLattice = false;
 };
 
-bool VertexRings::Init(LimitPatch const &patch, std::vector<int> const &corners,
+bool VertexRings::Init(PatchCorners const &ofPatch, std::vector<int> const &corners,
                        InnerMasks &masks) {
-    if (hasFeatures(patch)) {
+    if (hasFeatures(ofPatch.GetPatch())) {
         return false;
     }
     static thread_local Builder::Scratch scratch;
-    Builder builder(*this, patch, masks.GetRules(), scratch);
+    Builder builder(*this, ofPatch, masks.GetRules(), scratch);
     _firsts.reserve(corners.size());
     _rings.reserve(corners.size());
     for (int const corner : corners) {
@@ -263,7 +260,7 @@ bool VertexRings::Init(LimitPatch const &patch, std::vector<int> const &corners,
             ring.firstPoints[std::size_t(RingStep::Second)] = _numPoints;
             _numPoints += ring.GetNumPoints(RingStep::Second);
         }
-        return _inner.Init(patch, corners, masks);
+        return _inner.Init(ofPatch, corners, masks);
     }
     return true;
 }

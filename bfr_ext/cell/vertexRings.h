@@ -28,8 +28,7 @@ public:
     ///
     /// \param masks  of the rules of the steps
     /// \return       false where a ring or a neighbour is not plain; then the result is of no use
-    bool Init(FarExt::internal::LimitPatch const &patch, std::vector<int> const &corners,
-              InnerMasks &masks);
+    bool Init(PatchCorners const &ofPatch, std::vector<int> const &corners, InnerMasks &masks);
 
     std::vector<Ring> const &GetRings() const { return _rings; }
     std::size_t GetHeapSize() const { return GetHeapSizes(_rings, _firsts, _block, _inner); }

@@ -4,6 +4,9 @@
 #include "far_ext/executor.h"
 #include "far_ext/vtr/hexRefinement.h"
 
+#include <cassert>
+#include <cstdint>
+#include <limits>
 #include <numeric>
 #include <utility>
 
@@ -94,8 +97,10 @@ CellPatch MakePlainBaseCell(std::vector<int> faceSizes, std::vector<Index> faceV
     patch.edgeSharpness.resize(faceVerts.size());
     patch.diagonalSharpness.resize(faceSizes.size());
     patch.vertSharpness.resize(end);
-    // The corners from which there is an edge from one point to another, by the two.
-    std::vector<Index> corners(end * end, Far::INDEX_INVALID);
+    // The corners from which there is an edge from one point to another, by the two: small numbers, since all of them are
+    // cleared first.
+    assert(faceVerts.size() <= std::size_t(std::numeric_limits<std::int16_t>::max()));
+    std::vector<std::int16_t> corners(end * end, std::int16_t(Far::INDEX_INVALID));
     Index first = 0;
     for (int const faceSize : faceSizes) {
         for (int i = 0; i < faceSize; ++i) {
@@ -103,7 +108,7 @@ CellPatch MakePlainBaseCell(std::vector<int> faceSizes, std::vector<Index> faceV
             Index const start = faceVerts[std::size_t(corner)];
             Index const next = i + 1 == faceSize ? first : corner + 1;
             Index const stop = faceVerts[std::size_t(next)];
-            corners[std::size_t(start) * end + std::size_t(stop)] = corner;
+            corners[std::size_t(start) * end + std::size_t(stop)] = std::int16_t(corner);
             Index const other = corners[std::size_t(stop) * end + std::size_t(start)];
             if (other != Far::INDEX_INVALID && (start < numInner || stop < numInner)) {
                 patch.otherCorners[std::size_t(corner)] = other;

@@ -51,7 +51,7 @@ OPENSUBDIVHEX_API void GatherBaseCell(Level const &level, Far::Index face, Sdc::
 /// \brief Makes the cell of a base face that GatherBaseCell() gathers where no feature is near, but for the
 /// sources, which are the numbers of the points themselves.
 ///
-/// \param faceSizes, faceVerts  of the patch, the base face first
+/// \param faceSizes, faceVerts  of the patch, the base face first; at most 32,767 corners
 /// \param numInner              points all of whose faces are in the patch, the first ones
 /// \param hasSignature          whether the patch has its signature, without which it can only be refined
 OPENSUBDIVHEX_API CellPatch MakePlainBaseCell(std::vector<int> faceSizes,

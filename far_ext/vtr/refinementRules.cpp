@@ -23,6 +23,7 @@ namespace {
 constexpr int kHexagon = HexIndexing::kNumEFaceCorners;
 constexpr int kTrapezoid = HexIndexing::kNumBoundaryEFaceCorners;
 constexpr int kQuad = 4;
+constexpr int kFVertexFaces = 3; // around an F-vertex
 
 std::uint32_t getBits(float value) {
     std::uint32_t bits = 0;
@@ -217,7 +218,7 @@ void RefinementRules::makeVertexWeights() {
         QuadRow const row = FindQuadRow(_level.numHexagonalSteps, quad.flags);
         return {float(row.vertexWeight), quad.flags.GetShare()};
     };
-    // In the constant levels few vertices have such weights, and have rules of their own.
+    // In the constant levels few vertices have such weights.
     bool const areFew = _level.numHexagonalSteps >= kNumStepsToConstantMasks;
     std::vector<Index> few;
     Buffer<OfCorner> ofCorners;
@@ -233,9 +234,10 @@ void RefinementRules::makeVertexWeights() {
             QuadCorner const &quad = _level.quadCorners[std::size_t(i)];
             ofCorners[std::size_t(quad.corner)] = find(quad);
         });
-        _weightsOfVerts.Resize(std::size_t(_level.numVertices));
-        std::fill_n(_weightsOfVerts.data(), _weightsOfVerts.size(), kPlain);
     }
+    VertexVertexMask const plain = GetPlainVertexMask(kFVertexFaces);
+    _vertexWeights.assign(1 + kFVertexFaces, plain.faceWeight);
+    _vertexWeights[0] = plain.vertexWeight;
     auto const findOf = [&](Index corner) {
         if (!areFew) {
             return ofCorners[std::size_t(corner)];
@@ -281,11 +283,12 @@ void RefinementRules::makeVertexWeights() {
         if (isNew) {
             _vertexWeights.insert(_vertexWeights.end(), weights.begin(), weights.end());
         }
-        if (areFew || rule.numSources > 1) {
+        if (rule.numSources > 1) {
             ruled.push_back({vert, rule});
             positionsOfRuled.push_back(found->second);
         } else {
-            _weightsOfVerts[std::size_t(vert)] = found->second;
+            _weightsOfVerts.resize(std::size_t(vert), kPlain);
+            _weightsOfVerts.push_back(found->second);
         }
     }
     for (std::size_t i = 0; i < ruled.size(); ++i) {

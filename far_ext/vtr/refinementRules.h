@@ -140,13 +140,18 @@ public:
     /// Of those that have no rule of their own: the weight of the vertex, and behind it those of the F-vertices around
     /// it.  Vertices with equal weights share these.
     /// @{
-    static constexpr int kPlain = -1;
+    /// In place of the position of plain vertices, whatever their number of faces: there are the weights of those with
+    /// three.
+    static constexpr int kPlain = 0;
     /// The position of those of a vertex in GetAllVertexWeights(), or kPlain.
     int GetVertexWeights(Index vert) const {
-        return _weightsOfVerts.empty() ? kPlain : _weightsOfVerts[std::size_t(vert)];
+        return vert < GetEndOfVertexWeights() ? _weightsOfVerts[std::size_t(vert)] : kPlain;
     }
     std::vector<double> const &GetAllVertexWeights() const { return _vertexWeights; }
-    bool HasVertexWeights() const { return !_weightsOfVerts.empty(); }
+    /// Behind the last vertex that is not plain.
+    Index GetEndOfVertexWeights() const { return Index(_weightsOfVerts.size()); }
+    /// GetVertexWeights() of each vertex before GetEndOfVertexWeights().
+    int const *GetWeightsOfVertices() const { return _weightsOfVerts.data(); }
     /// @}
     /// The rule of vertices with \p numFaces faces that have none of their own.
     VertexVertexMask GetPlainVertexMask(int numFaces) const {
@@ -194,7 +199,7 @@ private:
     Interpolation _interpolation;
     VertexVertexMask _plainVertexMasks[kNumKept]; ///< by number of faces
     std::vector<RuledVertex> _ruledVertices;
-    Buffer<int> _weightsOfVerts;        ///< by vertex; empty where all are plain
+    std::vector<int> _weightsOfVerts;   ///< by vertex, up to the last that is not plain
     std::vector<double> _vertexWeights; ///< each set once
 
     std::vector<double> _weights;         ///< of all rows

@@ -329,12 +329,12 @@ void Maker::planVertices() {
     for (RefinementRules::RuledVertex const &vertex : _rules.GetRuledVertices()) {
         ruled.push_back(vertex.vert);
     }
-    for (Index vert = 0; vert < _level.numVertices && _rules.HasVertexWeights(); ++vert) {
+    for (Index vert = 0; vert < _rules.GetEndOfVertexWeights(); ++vert) {
         if (_rules.GetVertexWeights(vert) != RefinementRules::kPlain) {
             ruled.push_back(vert);
         }
     }
-    if (_rules.HasVertexWeights()) {
+    if (_rules.GetEndOfVertexWeights() > 0) {
         FarExt::internal::SortUnique(ruled);
     }
     std::vector<Range> ranges;

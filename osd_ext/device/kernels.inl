@@ -215,9 +215,12 @@ FUNCTION void makeListedVVertex(uint i) {
     } else if (eachHasAWeight) {
         next = next + PLACE(numSources);
         first = first + PLACE(numSources);
-        for (uint j = 0u; j < numCorners; ++j) {
-            addTo(e, weights[first + PLACE(j)], getFVertex(indices[next + PLACE(j)]));
+        // From the last one on, as on the processor.
+        Element sum = getZero();
+        for (uint j = numCorners; j > 0u; --j) {
+            addTo(sum, weights[first + PLACE(j - 1u)], getFVertex(indices[next + PLACE(j - 1u)]));
         }
+        e = addElements(e, sum);
     } else if (numCorners > 0u) {
         next = next + PLACE(numSources);
         Element sum = getFVertex(indices[next]);

@@ -14,14 +14,16 @@ namespace {
 struct TwoRows {
     static constexpr int kNumRows = 2;
 
-    template <int COUNT>
-    static OPENSUBDIVHEX_INLINE auto Load(Quad const *quads) {
-        if constexpr (COUNT == 1) {
-            return *quads;
-        } else {
-            return _mm256_load_ps(reinterpret_cast<float const *>(quads));
+    struct Mask {
+        explicit Mask(DenseFaceMask const &mask) : weights(mask.weights) {}
+        template <int FIRST, int COUNT>
+        OPENSUBDIVHEX_INLINE auto Get(int vert) const {
+            static_assert(COUNT == kNumRows);
+            return _mm256_load_ps(reinterpret_cast<float const *>(weights[vert] + FIRST));
         }
-    }
+
+        Quad const (*weights)[DenseFaceMask::kRowStride];
+    };
     template <int COUNT>
     static OPENSUBDIVHEX_INLINE auto Spread(Quad const &quad) {
         if constexpr (COUNT == 1) {

@@ -21,10 +21,16 @@ namespace {
 struct OneRow {
     static constexpr int kNumRows = 1;
 
-    template <int COUNT>
-    static OPENSUBDIVHEX_INLINE Quad Load(Quad const *quads) {
-        return *quads;
-    }
+    /// The weights of a mask, as they are used for all faces of a run.
+    struct Mask {
+        explicit Mask(DenseFaceMask const &mask) : weights(mask.weights) {}
+        template <int FIRST, int COUNT>
+        OPENSUBDIVHEX_INLINE Quad Get(int vert) const {
+            return weights[vert][FIRST];
+        }
+
+        Quad const (*weights)[DenseFaceMask::kRowStride];
+    };
     template <int COUNT>
     static OPENSUBDIVHEX_INLINE Quad Spread(Quad const &quad) {
         return quad;
@@ -37,13 +43,13 @@ struct OneRow {
 
 // The sums of the rows from FIRST on, in the order of the vertices, as those of weighted faces.
 template <class ROWS, int FIRST = 0>
-OPENSUBDIVHEX_INLINE void sumDenseRows(DenseFaceMask const &mask, Quad const *v, Quad *points) {
+OPENSUBDIVHEX_INLINE void sumDenseRows(typename ROWS::Mask const &mask, Quad const *v,
+                                       Quad *points) {
     constexpr int kRest = DenseFaceMask::kSize - FIRST;
     if constexpr (kRest > 0) {
         constexpr int kCount = kRest < ROWS::kNumRows ? kRest : ROWS::kNumRows;
         auto const weigh = [&](int vert) {
-            return ROWS::template Load<kCount>(mask.weights[vert] + FIRST) *
-                   ROWS::template Spread<kCount>(v[vert]);
+            return mask.template Get<FIRST, kCount>(vert) * ROWS::template Spread<kCount>(v[vert]);
         };
         auto sum = weigh(0);
         for (int vert = 1; vert < DenseFaceMask::kSize; ++vert) {
@@ -54,7 +60,7 @@ OPENSUBDIVHEX_INLINE void sumDenseRows(DenseFaceMask const &mask, Quad const *v,
     }
 }
 template <class ROWS>
-OPENSUBDIVHEX_INLINE void sumDenseRows(DenseFaceMask const &mask, QuadPair const *v,
+OPENSUBDIVHEX_INLINE void sumDenseRows(typename ROWS::Mask const &mask, QuadPair const *v,
                                        QuadPair *points) {
     constexpr int kSize = DenseFaceMask::kSize;
     constexpr Quad QuadPair::*kHalves[] = {&QuadPair::first, &QuadPair::second};
@@ -73,7 +79,7 @@ OPENSUBDIVHEX_INLINE void sumDenseRows(DenseFaceMask const &mask, QuadPair const
 
 template <class ACCESS, class ROWS>
 OPENSUBDIVHEX_INLINE void
-refineDenseFace(DenseFaceMask const &mask, Elements<float const> const &src,
+refineDenseFace(typename ROWS::Mask const &mask, Elements<float const> const &src,
                 Elements<float> const &dst, Far::Index const *verts, std::ptrdiff_t corner) {
     constexpr int kSize = DenseFaceMask::kSize;
     using Value = decltype(ACCESS::Load(src, 0));
@@ -89,28 +95,36 @@ refineDenseFace(DenseFaceMask const &mask, Elements<float const> const &src,
     ACCESS::StoreExactly(dst, corner + kSize - 1, points[kSize - 1]);
 }
 
+// Runs are mostly short: what a run takes is kept small.
 template <class ACCESS, class ROWS, bool HAS_OPPOSITE>
 void refineDenseFaces(DenseFaceTask const &task) {
     constexpr int kSize = DenseFaceMask::kSize;
     PlainFaceQuads const plain(*task.plainMask);
     Elements<float const> const src = task.src;
-    Elements<float> const dst = task.dst;
-    Far::Index const *const verts = task.verts;
-    std::ptrdiff_t corner = task.firstCorner;
-    Far::Index face = task.begin;
-    for (auto const *run = task.runs; face < task.end; ++run) {
-        Far::Index const endFace = std::min(run[1].begin, task.end);
-        std::ptrdiff_t const end = corner + std::ptrdiff_t(endFace - face) * kSize;
-        face = endFace;
+    // The next face reads and writes there.
+    Elements<float> dst = {ACCESS::At(task.dst, task.firstCorner), task.dst.stride};
+    Far::Index const *verts = task.verts + task.firstCorner;
+    Far::Index const *const firstVerts = verts;
+    auto const getVerts = [&](Far::Index face) {
+        return firstVerts + std::ptrdiff_t(face - task.begin) * kSize;
+    };
+    Far::Index const *const endVerts = getVerts(task.end);
+    DenseFaceMask const *const masks = task.masks;
+    for (auto const *run = task.runs; verts < endVerts; ++run) {
+        Far::Index const *const behind = getVerts(std::min(run[1].begin, task.end));
         if (run->rule == FarExt::internal::RefinementRules::kCirculant) {
-            refineUnrolledFaces<ACCESS, kSize, HAS_OPPOSITE>(plain, src, verts, dst, corner, end);
-            corner = end;
+            std::ptrdiff_t const count = behind - verts;
+            refineUnrolledFaces<ACCESS, kSize, HAS_OPPOSITE>(plain, src, verts, dst, 0, count);
+            verts = behind;
+            dst.data = ACCESS::At(dst, count);
             continue;
         }
-        DenseFaceMask const &mask = task.masks[run->rule];
-        for (; corner < end; corner += kSize) {
-            refineDenseFace<ACCESS, ROWS>(mask, src, dst, verts + corner, corner);
-        }
+        typename ROWS::Mask const mask(masks[run->rule]);
+        do {
+            refineDenseFace<ACCESS, ROWS>(mask, src, dst, verts, 0);
+            verts += kSize;
+            dst.data = ACCESS::At(dst, kSize);
+        } while (verts < behind);
     }
 }
 

@@ -24,7 +24,7 @@ using FarExt::internal::VertexRule;
 namespace {
 
 constexpr int kMaxUnrolledSize = 6;
-constexpr int kFVertexFaces = 3; ///< around an F-vertex, at most
+constexpr int kFVertexFaces = 3; // around an F-vertex, at most
 /// Faces and vertices that a thread takes at a time, of some microseconds.
 constexpr Index kFaceBatch = 1024;
 constexpr Index kVertexBatch = 4096;
@@ -178,6 +178,28 @@ WeightedVertex makeWeightedVertex(VertexRule const &rule, RefinementRules const 
     return vertex;
 }
 
+// Appends the runs that make up vertices [begin, end): from one on all have three faces, up to another some have weights.
+void appendVertexRuns(RefinementRules const &rules, Level const &parent, Index begin, Index end,
+                      std::vector<VertexRun> &runs) {
+    Index const endOfWeights = rules.GetEndOfVertexWeights();
+    while (begin < end) {
+        Index behind = end;
+        for (Index const limit : {parent.numVertsOfAnyValence, endOfWeights}) {
+            behind = begin < limit ? std::min(behind, limit) : behind;
+        }
+        int const *const weights = rules.GetWeightsOfVertices();
+        Index const numCorners = parent.vertFirstFace[behind] - parent.vertFirstFace[begin];
+        runs.push_back(
+            {begin, behind,
+             begin < endOfWeights &&
+                 std::any_of(weights + begin, weights + behind,
+                             [](int position) { return position != RefinementRules::kPlain; }),
+             begin >= parent.numVertsOfAnyValence &&
+                 numCorners == kFVertexFaces * (behind - begin)});
+        begin = behind;
+    }
+}
+
 // Groups all vertices of the level that make a V-vertex.
 void makeVertices(RefinementRules const &rules, Refinement const &refinement,
                   PreparedRefinement &prepared) {
@@ -194,7 +216,7 @@ void makeVertices(RefinementRules const &rules, Refinement const &refinement,
             batchBegin, batchEnd, weighted,
             [&](Index begin, Index end, Index) {
                 if (arePlain) {
-                    prepared.vertexRuns.items.push_back({begin, end});
+                    appendVertexRuns(rules, parent, begin, end, prepared.vertexRuns.items);
                 }
             },
             [&](Index vert, Index) {

@@ -97,6 +97,14 @@ struct IndexRun {
     Far::Index end;
 };
 
+/// \brief Plain vertices of the parent, and those with weights by face.
+struct VertexRun {
+    Far::Index begin;
+    Far::Index end;
+    bool haveWeights;    ///< some, by face; all are before RefinementRules::GetEndOfVertexWeights()
+    bool haveThreeFaces; ///< all of them
+};
+
 /// \brief A refinement prepared for evaluation: all that making the points of its child takes.
 /// Refers to the parent level.
 ///
@@ -112,7 +120,7 @@ struct PreparedRefinement {
     Groups<WeightedFace> weightedFaces;
     /// For a truncation, all vertices that it makes.
     Groups<ListedVertex> listedVertices;
-    Groups<IndexRun> vertexRuns; ///< plain vertices of the parent, and those with weights by face
+    Groups<VertexRun> vertexRuns;
     Groups<WeightedVertex> weightedVertices;
 
     Far::Index numVVertices = 0; ///< F-vertices follow in the child

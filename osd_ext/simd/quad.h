@@ -38,6 +38,19 @@ inline Quad operator*(Quad const &a, Quad const &b) {
 
 OPENSUBDIVHEX_INLINE Quad Spread(float value) { return Quad{value, value, value, value}; }
 
+/// Element I of a quad four times, which takes no memory access.
+template <int I>
+OPENSUBDIVHEX_INLINE Quad SpreadElement(Quad const &quad) {
+#if defined(__clang__)
+    return __builtin_shufflevector(quad, quad, I, I, I, I);
+#elif defined(__GNUC__)
+    using Places = int __attribute__((vector_size(kQuad * sizeof(int))));
+    return __builtin_shuffle(quad, Places{I, I, I, I});
+#else
+    return Spread(quad[I]);
+#endif
+}
+
 /// Reads the first WIDTH floats, 1 to 4, and not one more; the others are 0.
 template <int WIDTH>
 OPENSUBDIVHEX_INLINE Quad LoadFloats(float const *src) {

@@ -47,7 +47,7 @@ TEST(CacheMemoryTest, IsWhatItCounts) {
         SurfaceFactoryCache cache;
         {
             auto const factory = SurfaceFactory::Create(
-                *refiner, SurfaceFactory::Options().SetExternalCache(&cache).SetMemoryOfFaces(0));
+                *refiner, SurfaceFactory::Options().SetExternalCache(&cache));
             long const before = CountLiveBytes();
             evaluate(*factory);
             auto const taken = double(CountLiveBytes() - before);

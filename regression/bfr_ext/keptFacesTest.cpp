@@ -18,10 +18,13 @@
 namespace OpenSubdivHex::Regression::keptFacesTest {
 namespace {
 
+using BfrExt::internal::MemoryCount;
 using Kept = BfrExt::internal::KeptFaces<int>;
 using Indices = std::vector<Far::Index>;
 
 constexpr std::size_t kEnough = 1 << 20;
+
+MemoryCount makeCount() { return MemoryCount(std::make_shared<MemoryCount::Total>(0)); }
 
 // Of a triangle.
 Indices makePoints(int first) { return {first, first + 1, first + 2, 0, 0, 1, 2, 3, 4}; }
@@ -69,10 +72,11 @@ Found find(BfrExt::Surface<double> &surface, Shape const &shape, INIT const &ini
 }
 
 /// What surfaces of all faces and kinds of data are made of, several times.
-std::vector<Found> findAll(BfrExt::SurfaceFactory const &factory, Shape const &shape) {
+std::vector<Found> findAll(BfrExt::SurfaceFactory const &factory, Shape const &shape,
+                           int numRounds) {
     std::vector<Found> result;
     BfrExt::Surface<double> surface;
-    for (int round = 0; round < 3; ++round) {
+    for (int round = 0; round < numRounds; ++round) {
         for (int face = 0; face < factory.GetNumFaces(); ++face) {
             result.push_back(find(surface, shape,
                                   [&](auto &of) { return factory.InitVertexSurface(face, &of); }));
@@ -91,7 +95,8 @@ std::vector<Found> findAll(BfrExt::SurfaceFactory const &factory, Shape const &s
 } // namespace
 
 TEST(KeptFacesTest, AreThoseThatWereAddedTwice) {
-    Kept kept(5, 2, kEnough);
+    MemoryCount count = makeCount();
+    Kept kept(5, 2, kEnough, count);
     EXPECT_FALSE(kept.Find(1, 3));
     Indices const points = makePoints(10);
     EXPECT_FALSE(add(kept, 1, 3, 7, 3, points));
@@ -113,7 +118,8 @@ TEST(KeptFacesTest, AreThoseThatWereAddedTwice) {
 TEST(KeptFacesTest, TakeNoMoreMemoryThanTheyMay) {
     constexpr int kNumFaces = 10000;
     for (std::size_t const memory : {std::size_t(0), std::size_t(1000), kEnough / 4}) {
-        Kept kept(kNumFaces, 1, memory);
+        MemoryCount count = makeCount();
+        Kept kept(kNumFaces, 1, memory, count);
         std::size_t numKept = 0;
         for (int face = 0; face < kNumFaces; ++face) {
             EXPECT_FALSE(add(kept, 0, face, face, 3, makePoints(face)));
@@ -121,7 +127,8 @@ TEST(KeptFacesTest, TakeNoMoreMemoryThanTheyMay) {
             ASSERT_EQ(kept.Find(0, face), added);
             numKept += added ? 1 : 0;
         }
-        EXPECT_LE(numKept * (sizeof(Kept::Face) + 9 * sizeof(Far::Index)), memory);
+        EXPECT_LE(numKept * (sizeof(Kept::Face) + 9 * sizeof(Far::Index)), count.Get());
+        EXPECT_LE(count.Get(), memory);
         EXPECT_EQ(numKept > 0, memory > 1000);
         for (int face = 0; face < kNumFaces; ++face) {
             Kept::Face const *const found = kept.Find(0, face);
@@ -133,7 +140,8 @@ TEST(KeptFacesTest, TakeNoMoreMemoryThanTheyMay) {
 TEST(KeptFacesTest, OfOneKindAreKeptWhereAnotherHasNoMemory) {
     constexpr int kNumFaces = 20000;
     constexpr std::size_t kSlots = kNumFaces * sizeof(void *);
-    Kept kept(kNumFaces, 2, 2 * kSlots - 1);
+    MemoryCount count = makeCount();
+    Kept kept(kNumFaces, 2, 2 * kSlots - 1, count);
     Indices const points = makePoints(7);
     add(kept, 0, 3, 1, 3, points);
     for (int round = 0; round < 3; ++round) {
@@ -145,7 +153,8 @@ TEST(KeptFacesTest, OfOneKindAreKeptWhereAnotherHasNoMemory) {
 
 TEST(KeptFacesTest, LieWhereTheirTypesMay) {
     using KeptPointers = BfrExt::internal::KeptFaces<int const *>;
-    KeptPointers kept(100, 1, kEnough);
+    MemoryCount count = makeCount();
+    KeptPointers kept(100, 1, kEnough, count);
     int const type = 1;
     // The largest takes more than a block.
     for (int face = 0; face < 100; ++face) {
@@ -163,7 +172,8 @@ TEST(KeptFacesTest, LieWhereTheirTypesMay) {
 TEST(KeptFacesTest, AreTheSameForAllThreads) {
     constexpr int kNumFaces = 20000;
     constexpr int kNumThreads = 2;
-    Kept kept(kNumFaces, 1, 8 * kEnough);
+    MemoryCount count = makeCount();
+    Kept kept(kNumFaces, 1, 8 * kEnough, count);
     std::vector<Kept::Face const *> added[kNumThreads];
     for (int face = 0; face < kNumFaces; ++face) {
         ASSERT_FALSE(add(kept, 0, face, face, 3, makePoints(face)));
@@ -199,8 +209,9 @@ TEST(KeptFacesTest, AreTheSameForAllThreads) {
     }
 }
 
-// With memory for all faces, for some and for none, and surfaces that stay when the factory goes.
+// As those that are not kept, also when the factory goes.
 TEST(KeptFacesTest, MakeTheSameSurfaces) {
+    constexpr int kNumRounds = 3;
     int numChannels = 0;
     for (char const *const name : {"texturedFin", "leftHanded", "dartsTriangles"}) {
         Shape const &shape = GetFeatureShape(name);
@@ -209,34 +220,34 @@ TEST(KeptFacesTest, MakeTheSameSurfaces) {
         sdcOptions.SetVtxBoundaryInterpolation(Sdc::Options::VTX_BOUNDARY_EDGE_ONLY);
         auto const refiner = CreateRefiner(shape, ReferenceMask::Smooth, 0, sdcOptions);
         numChannels += refiner->GetNumFVarChannels();
-        BfrExt::SurfaceFactory::Options options;
-        options.SetMemoryOfFaces(0);
-        auto const without = BfrExt::SurfaceFactory::Create(*refiner, options);
-        std::vector<Found> const expected = findAll(*without, shape);
-        for (std::size_t const memory : {std::size_t(1) << 17, std::size_t(1) << 26}) {
-            options.SetMemoryOfFaces(memory);
-            auto factory = BfrExt::SurfaceFactory::Create(*refiner, options);
-            std::vector<Found> results[3];
-            std::vector<std::thread> threads;
-            threads.reserve(3);
-            for (std::vector<Found> &result : results) {
-                threads.emplace_back([&] { result = findAll(*factory, shape); });
-            }
-            for (std::thread &thread : threads) {
-                thread.join();
-            }
-            for (std::vector<Found> const &result : results) {
-                EXPECT_TRUE(result == expected);
-            }
-            BfrExt::Surface<double> surface;
-            ASSERT_TRUE(factory->InitVertexSurface(0, &surface));
-            BfrExt::Surface<double> const copy = surface;
-            surface.Clear();
-            EXPECT_FALSE(surface.IsValid());
-            factory.reset();
-            surface = copy;
-            EXPECT_TRUE(find(surface, shape, [](auto &) { return true; }) == expected[0]);
+        // Each face once: none is kept.
+        std::vector<Found> const once =
+            findAll(*BfrExt::SurfaceFactory::Create(*refiner), shape, 1);
+        std::vector<Found> expected;
+        for (int round = 0; round < kNumRounds; ++round) {
+            expected.insert(expected.end(), once.begin(), once.end());
         }
+        auto factory = BfrExt::SurfaceFactory::Create(*refiner);
+        std::vector<Found> results[3];
+        std::vector<std::thread> threads;
+        threads.reserve(3);
+        for (std::vector<Found> &result : results) {
+            threads.emplace_back([&] { result = findAll(*factory, shape, kNumRounds); });
+        }
+        for (std::thread &thread : threads) {
+            thread.join();
+        }
+        for (std::vector<Found> const &result : results) {
+            EXPECT_TRUE(result == expected);
+        }
+        BfrExt::Surface<double> surface;
+        ASSERT_TRUE(factory->InitVertexSurface(0, &surface));
+        BfrExt::Surface<double> const copy = surface;
+        surface.Clear();
+        EXPECT_FALSE(surface.IsValid());
+        factory.reset();
+        surface = copy;
+        EXPECT_TRUE(find(surface, shape, [](auto &) { return true; }) == expected[0]);
     }
     EXPECT_GT(numChannels, 0);
 }

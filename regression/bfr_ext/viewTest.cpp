@@ -1018,7 +1018,7 @@ TEST(View, ThicknessIsCloseToThatOfTheSurface) {
                 };
                 auto const measure = [&](std::size_t cell) {
                     CellGrid grid(refined[cell].GetType().GetShape());
-                    grid.Sample(refined, cell, samples);
+                    grid.Sample(refined[cell], samples);
                     CellMeasures own;
                     std::vector<CellMeasures> children(std::size_t(grid.GetNumChildren()));
                     grid.Measure(samples, own);

@@ -352,11 +352,6 @@ Contestant makeInitContestant(std::string const &name, std::shared_ptr<Workspace
 Contest makeInitContest(BenchMesh const &mesh) {
     auto const workspace = std::make_shared<Workspace>(mesh);
     auto const makeOwn = [=] { return BfrExt::SurfaceFactory::Create(*workspace->refiner); };
-    auto const makeForgetful = [=] {
-        BfrExt::SurfaceFactory::Options options;
-        options.SetMemoryOfFaces(0);
-        return BfrExt::SurfaceFactory::Create(*workspace->refiner, options);
-    };
     auto const makePeer = [=] {
         return std::make_unique<Bfr::RefinerSurfaceFactory<>>(*workspace->peerRefiner);
     };
@@ -368,8 +363,6 @@ Contest makeInitContest(BenchMesh const &mesh) {
         contest.contestants.push_back(makeInitContestant<PeerSurfaces>(
             "Bfr::SurfaceFactory" + suffix, workspace, makePeer, isCold));
     }
-    contest.contestants.push_back(makeInitContestant<OwnSurfaces>(
-        "BfrExt::SurfaceFactory, warm, no face kept", workspace, makeForgetful, false));
     contest.pairings = {{"surface-cold", 0, {1}}, {"surface-warm", 2, {3}}};
     return contest;
 }
