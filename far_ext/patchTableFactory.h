@@ -235,14 +235,10 @@ private:
         Index firstChild;
         Index firstPatches[2]; // by half, if the face is cut
     };
-    struct Face {
-        FaceShape shape;
-        int diagonalEnd; // of internal::FaceCells
-    };
     class TreeBuilder;
 
-    std::vector<Face> _faces;
-    std::vector<Node> _roots; // by face
+    std::vector<FaceShape> _shapes; // by face
+    std::vector<Node> _roots;       // by face
     std::vector<Node> _children;
     std::vector<Patch> _patches;
 };

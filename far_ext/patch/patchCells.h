@@ -2,6 +2,7 @@
 #ifndef OPENSUBDIVHEX_FAR_EXT_PATCH_PATCH_CELLS_H
 #define OPENSUBDIVHEX_FAR_EXT_PATCH_PATCH_CELLS_H
 
+#include "far_ext/faceShape.h"
 #include "far_ext/vtr/hierarchy.h"
 
 #include <functional>
@@ -54,9 +55,9 @@ struct FaceCells {
     bool isHalf;     ///< a half face
 };
 
-/// Those of a face without a sharp diagonal.
-constexpr FaceCells MakeFaceCells(int faceSize) {
-    return {faceSize, HasHalves(faceSize) ? kDiagonalEnd : 0, false};
+/// Those of a face without a sharp diagonal, or of half a face.
+constexpr FaceCells MakeFaceCells(FaceShape shape) {
+    return {shape.size, HasHalves(shape.size) && !shape.isHalf ? kDiagonalEnd : 0, shape.isHalf};
 }
 /// Those of a face.
 FaceCells FindFaceCells(Level const &level, Far::Index face);
