@@ -22,7 +22,6 @@ namespace {
 constexpr int kHexagon = HexIndexing::kNumEFaceCorners;
 constexpr int kTrapezoid = HexIndexing::kNumBoundaryEFaceCorners;
 constexpr int kQuad = 4;
-constexpr int kFVertexFaces = 3; // around an F-vertex
 
 std::uint32_t getBits(float value) {
     std::uint32_t bits = 0;

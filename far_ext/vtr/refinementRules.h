@@ -12,6 +12,9 @@
 
 namespace OpenSubdivHex::FarExt::internal {
 
+/// Faces around an F-vertex inside the mesh; on a border there are fewer.
+inline constexpr int kFVertexFaces = 3;
+
 /// \brief How the F-vertices of a face are made of its vertices: a row of weights for each corner.
 ///
 /// Faces with equal rows share a rule.  The rows of a *circulant* rule are one mask, turned; those of a *dense*

@@ -15,6 +15,7 @@ using Far::Index;
 using FarExt::internal::FaceRule;
 using FarExt::internal::ForEachRun;
 using FarExt::internal::InsertUnique;
+using FarExt::internal::kFVertexFaces;
 using FarExt::internal::Level;
 using FarExt::internal::ParallelFor;
 using FarExt::internal::Refinement;
@@ -24,7 +25,6 @@ using FarExt::internal::VertexRule;
 namespace {
 
 constexpr int kMaxUnrolledSize = 6;
-constexpr int kFVertexFaces = 3; // around an F-vertex, at most
 /// Faces and vertices that a thread takes at a time, of some microseconds.
 constexpr Index kFaceBatch = 1024;
 constexpr Index kVertexBatch = 4096;

@@ -11,12 +11,11 @@
 namespace OpenSubdivHex::OsdExt::internal {
 
 using Far::Index;
+using FarExt::internal::kFVertexFaces;
 using FarExt::internal::Level;
 using FarExt::internal::RefinementRules;
 
 namespace {
-
-constexpr int kFVertexFaces = 3; // around an F-vertex
 
 // A plain face of any size.
 template <class ACCESS>
