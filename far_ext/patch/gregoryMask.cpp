@@ -199,7 +199,7 @@ void AddKitePoints(CurveShape const &shape, CurveNeighbor const neighbors[2],
     CurveNeighbor const ofLine[2] = {halfSide, otherLine};
     Inward const inward = makeInward(ofLine, lengths);
     addInnerPoints(line, inward, mask);
-    // Of the kite on the other side the line leads from the centre to the middle.
+    // Seen from the kite on the other side, the line leads from the centre to the middle.
     CurveNeighbor const fromCenter[2] = {otherLine, halfSide};
     double const reversed[2] = {lengths[1], lengths[0]};
     auto const points = makeInnerPoints(reverse(line), makeInward(fromCenter, reversed));

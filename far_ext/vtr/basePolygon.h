@@ -83,12 +83,12 @@ private:
     Pair const _center;
 };
 
-/// What a BasePolygon of a common size says, found once: places are found in it by the million.
+/// A BasePolygon of a common size, prepared once: places are found in it by the million.
 class KnownPolygon {
 public:
     using Pair = BasePolygon::Pair;
 
-    /// That of \p size vertices; null where this is not common.
+    /// Returns the polygon of \p size vertices; null where that size is not common.
     static KnownPolygon const *Find(int size) {
         static KnownPolygon const kAll[] = {KnownPolygon(kMinSize), KnownPolygon(4),
                                             KnownPolygon(5),        KnownPolygon(6),

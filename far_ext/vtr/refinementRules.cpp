@@ -59,7 +59,7 @@ struct TagRange {
     bool empty() const { return first == behind; }
 };
 
-// What a tag is, in a face that begins at a corner: an even number of words.
+// Returns the words of a tag in a face that begins at a corner: an even number of them.
 template <typename TAG>
 auto getWords(TAG tag, Index firstCorner) {
     tag.corner -= firstCorner;
@@ -514,7 +514,7 @@ void RefinementRules::DenseRuleMaker::addRule(FaceTags const &tags) {
         }
         row[std::size_t(i)] += towards;
         if (sharp > 0) {
-            // Of a hexagon cut by its diagonal 0-3, each half follows the mask of a half face V, W, Q, P:
+            // If a hexagon is cut by its diagonal 0-3, each half follows the mask of a half face V, W, Q, P:
             // V and W are the ends of the diagonal, Q and P the two vertices between them.  At the ends
             // both halves have the same weights.
             auto const &half = tags.isHalf ? kHalfFace : kHexagonHalves[i < kDiagonalEnd ? 1 : 0];

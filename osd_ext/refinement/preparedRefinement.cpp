@@ -107,7 +107,7 @@ public:
     // The position of those of a face, row by row.
     std::size_t Find(Index face) {
         FaceRule const rule = _rules.GetFaceRule(face);
-        // Of circulant rules, which are told by the size, negative numbers.
+        // Circulant rules, which their size identifies, have negative keys.
         int const key = rule.IsCirculant() ? -rule.GetSize() : _rules.FindRun(face)->rule;
         auto const [found, isNew] = _positions.try_emplace(key, _weights.size());
         if (isNew) {
@@ -299,7 +299,7 @@ PlainFaceMask MakePlainFaceMask(FaceRule const &circulant) {
     double const all = weights[size > PlainFaceMask::kMinSize ? 2 : 1];
     mask.self = float(weights[0] - all);
     mask.neighbor = float(weights[1] - all);
-    // Of two that are the same but for rounding, none is there for the kernel.
+    // Two weights that differ by rounding alone count as equal: the kernel then adds none.
     mask.opposite = hasOpposite ? float(weights[size / 2]) - float(all) : 0;
     mask.all = float(all);
     return mask;

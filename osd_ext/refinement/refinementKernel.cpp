@@ -164,7 +164,7 @@ OPENSUBDIVHEX_INLINE auto sumOfWeighted(float const *weights, Elements<float con
     return Spread(weights[0]) * own + sum;
 }
 
-// What is read besides is of faces that are done, or of the level before.
+// It also reads vertices of faces that are done, and of the level before.
 template <class ACCESS>
 void refineVertexRun(RefinementTask const &task, VertexRun run) {
     PreparedRefinement const &refinement = *task.refinement;
