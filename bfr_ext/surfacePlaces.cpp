@@ -6,6 +6,7 @@
 #include "far_ext/vtr/report.h"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 #include <string>
 
@@ -55,6 +56,14 @@ SurfacePlaces<REAL>::Create(SurfaceFactory const &factory, int numPlaces, Index 
             }
         }
         REAL const *const uv = uvs + 2 * std::ptrdiff_t(number);
+        if (!std::isfinite(uv[0]) || !std::isfinite(uv[1])) {
+            FarExt::internal::Report({FarExt::StatusCode::InvalidArgument,
+                                      FarExt::ComponentType::Face, face,
+                                      "u and v of place " + std::to_string(number) +
+                                          " are not finite, in face " + std::to_string(face)},
+                                     status);
+            return nullptr;
+        }
         places->_numbers.push_back(number);
         places->_uvs.insert(places->_uvs.end(), uv, uv + 2);
     }

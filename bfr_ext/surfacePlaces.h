@@ -44,9 +44,9 @@ public:
     /// \param factory    which need not live on
     /// \param numPlaces  how many there are, 0 or more
     /// \param faces      by place, a face of factory.GetLevel()
-    /// \param uvs        by place, u and v in that face
+    /// \param uvs        by place, u and v in that face, which are finite
     /// \param options    what points are evaluated
-    /// \param status     names a face without a surface; no point is evaluated then
+    /// \param status     names a face without a surface, or a place that is not finite; no point is evaluated then
     /// \return           null on failure
     static std::unique_ptr<SurfacePlaces> Create(SurfaceFactory const &factory, int numPlaces,
                                                  Index const faces[], REAL const uvs[],

@@ -342,62 +342,65 @@ void BindEvaluators(py::module_ &module) {
         module, "CpuEvaluator", "Evaluates stencils on the calling thread, in ascending order.");
     bindStencilEvaluator<OsdExt::ParallelEvaluator>(
         module, "ParallelEvaluator",
-        "Evaluates stencils on as many threads as set_num_threads or OpenMP say, with the results "
-        "of\n"
-        "CpuEvaluator.");
+        "Evaluates stencils on all threads that the executor has, with the results of "
+        "CpuEvaluator.\n"
+        "set_num_threads() and set_executor() choose the threads.");
 
     py::class_<Evaluator>(
         module, "RefinementEvaluator",
         "RefinementEvaluator(refiner, *, interpolation_mode='vertex', fvar_channel=0)\n\n"
-        "Computes the values of refined levels straight from the control values, without a table:\n"
-        "the fastest way to refine a whole mesh again and again.  Raises RuntimeError once the\n"
-        "refiner refined again.  Threads that share one wait for each other.")
+        "Computes the values of refined levels directly from the control values, without a table: "
+        "the\n"
+        "fastest way to refine a whole mesh in every frame.  Raises RuntimeError after the refiner "
+        "was\n"
+        "refined again.  Threads that share an evaluator wait for each other.")
         .def(py::init<std::shared_ptr<Refiner>, py::object, int>(), py::arg("refiner").none(false),
              py::kw_only(), py::arg("interpolation_mode") = "vertex", py::arg("fvar_channel") = 0)
         .def_property_readonly("max_level", &Evaluator::GetMaxLevel,
                                "The last level of the refiner.")
         .def("get_num_elements", &Evaluator::GetNumElements,
-             "get_num_elements(level)\n\nThe vertices, or face-varying values, of a level.",
+             "get_num_elements(level)\n\n"
+             "Number of vertices, or face-varying values, of a level.",
              py::arg("level"))
         .def_property_readonly("num_elements_all_levels", &Evaluator::GetNumElementsAllLevels,
-                               "Elements of levels 1 ... max_level together.")
-        .def(
-            "evaluate", &Evaluator::Evaluate,
-            "evaluate(src, level=None, dst=None)\n\n"
-            "The values of one level, of the last for None.\n\n"
-            "Args:\n"
-            "    src: control values, taken as float32, shape (elements of level 0,) or\n"
-            "        (elements of level 0, length)\n"
-            "    dst: float32, shape (elements of the level,) or (elements of the level, length);\n"
-            "        None: it is made.  No number that is read may be written.\n\n"
-            "Returns dst.",
-            py::arg("src"), py::arg("level") = py::none(), py::arg("dst") = py::none())
+                               "Number of elements of levels 1 ... max_level.")
+        .def("evaluate", &Evaluator::Evaluate,
+             "evaluate(src, level=None, dst=None)\n\n"
+             "The values of one level.\n\n"
+             "Args:\n"
+             "    src: control values, converted to float32, shape (elements of level 0,) or\n"
+             "        (elements of level 0, length)\n"
+             "    level: None: the last\n"
+             "    dst: float32, shape (elements of the level,) or (elements of the level,\n"
+             "        length); must not overlap src; None: allocated\n\n"
+             "Returns dst.",
+             py::arg("src"), py::arg("level") = py::none(), py::arg("dst") = py::none())
         .def("evaluate_all_levels", &Evaluator::EvaluateAllLevels,
              "evaluate_all_levels(src, dst=None)\n\n"
-             "The values of levels 1 ... max_level, level behind level.  Returns dst.",
+             "The values of levels 1 ... max_level in one array.  Returns dst.",
              py::arg("src"), py::arg("dst") = py::none())
-        .def(
-            "evaluate_limit", &Evaluator::EvaluateLimit,
-            "evaluate_limit(src, level=None, dst=None)\n\n"
-            "Points of the limit surface at the vertices of a level, of the last for None, which\n"
-            "has full topology; of vertex data alone.  Arrays are those of evaluate().  The first\n"
-            "call for a level takes longer, and keeps memory.  Returns dst.  Raises StatusError.",
-            py::arg("src"), py::arg("level") = py::none(), py::arg("dst") = py::none())
+        .def("evaluate_limit", &Evaluator::EvaluateLimit,
+             "evaluate_limit(src, level=None, dst=None)\n\n"
+             "Points of the limit surface at the vertices of a level with full topology; for "
+             "vertex data\n"
+             "only.  Arguments are those of evaluate().  The first call for a level takes longer "
+             "and\n"
+             "allocates memory that stays.  Returns dst.  Raises StatusError.",
+             py::arg("src"), py::arg("level") = py::none(), py::arg("dst") = py::none())
         .def("evaluate_limit_with_derivatives", &Evaluator::EvaluateLimitWithDerivatives,
              "evaluate_limit_with_derivatives(src, level=None, dst=None, du=None, dv=None)\n\n"
-             "Points, as evaluate_limit(), and both first derivatives, which span the tangent "
-             "plane on\n"
-             "side 0 of each vertex: du and dv are arrays as dst.  Returns (dst, du, dv).",
+             "Points as evaluate_limit(), and both first derivatives, which span the tangent plane "
+             "on side 0\n"
+             "of each vertex.  du and dv have the shape of dst.  Returns (dst, du, dv).",
              py::arg("src"), py::arg("level") = py::none(), py::arg("dst") = py::none(),
              py::arg("du") = py::none(), py::arg("dv") = py::none());
 
-    module.def(
-        "compute_normals", &computeNormals,
-        "compute_normals(du, dv, normals=None)\n\n"
-        "Unit vectors across du and dv, of the shape (n, 3); zeros where these are parallel.\n"
-        "They are float64 where du or dv is, else float32.  Returns normals, which is made\n"
-        "for None.",
-        py::arg("du"), py::arg("dv"), py::arg("normals") = py::none());
+    module.def("compute_normals", &computeNormals,
+               "compute_normals(du, dv, normals=None)\n\n"
+               "Unit vectors perpendicular to du and dv, shape (n, 3); zeros where du and dv are "
+               "parallel.\n"
+               "float64 if du or dv is, else float32.  Returns normals, which None allocates.",
+               py::arg("du"), py::arg("dv"), py::arg("normals") = py::none());
 }
 
 } // namespace OpenSubdivHex::Python

@@ -236,21 +236,20 @@ void bindRelations(py::class_<Level> &level) {
                                "int32, shape (edges, 2), a view.")
         .def_property_readonly("edge_faces", relation(&TopologyLevel::GetAllEdgeFaces, false, 2),
                                "int32, shape (edges, 2), a view: the first face runs from the "
-                               "edge's first\nvertex to its second.  The second of a boundary edge "
-                               "is negative.")
+                               "edge's first vertex to its\n"
+                               "second.  A boundary edge has a negative second face.")
         .def_property_readonly("vertex_face_offsets",
                                relation(&TopologyLevel::GetVertexFaceOffsets),
                                "int32, shape (vertices + 1,), a view into vertex_faces.")
-        .def_property_readonly("vertex_faces", relation(&TopologyLevel::GetAllVertexFaces),
-                               "int32, shape (corners,), a view: the faces of each vertex in turn, "
-                               "counter-clockwise.")
+        .def_property_readonly(
+            "vertex_faces", relation(&TopologyLevel::GetAllVertexFaces),
+            "int32, shape (corners,), a view: the faces of each vertex, counter-clockwise.")
         .def_property_readonly("vertex_edge_offsets",
                                relation(&TopologyLevel::GetVertexEdgeOffsets),
                                "int32, shape (vertices + 1,), a view into vertex_edges.")
         .def_property_readonly(
             "vertex_edges", relation(&TopologyLevel::GetAllVertexEdges),
-            "int32, shape (2 edges,), a view: the edges of each vertex in turn,\n"
-            "counter-clockwise.")
+            "int32, shape (2 edges,), a view: the edges of each vertex, counter-clockwise.")
         .def(
             "find_edge",
             [](Level const &self, int v0, int v1) {
@@ -272,95 +271,116 @@ void bindTags(py::class_<Level> &level) {
     auto const vertices = &TopologyLevel::GetNumVertices;
     level
         .def("get_face_kinds", makeArray<std::uint8_t>(faces, false, &TopologyLevel::GetFaceKind),
-             "get_face_kinds()\n\nA FaceKind for each face: uint8, shape (faces,).")
+             "get_face_kinds()\n\n"
+             "uint8, shape (faces,): the FaceKind of each face.")
         .def("is_face_hole", &areHoles,
-             "is_face_hole(half=None)\n\nWhether each face, or a half of it, lies in holes alone: "
-             "bool, shape (faces,).",
+             "is_face_hole(half=None)\n\n"
+             "bool, shape (faces,): whether each face, or its given half, lies in holes alone.",
              py::arg("half") = py::none())
         .def("is_face_half", makeMask(faces, true, &TopologyLevel::IsFaceHalf),
-             "is_face_half()\n\nWhether each face is half a hexagon, cut by a sharp boundary: "
-             "bool,\nshape (faces,).")
+             "is_face_half()\n\n"
+             "bool, shape (faces,): whether each face is half a hexagon, cut by a sharp boundary.")
         .def("get_face_diagonal_sharpness",
              makeArray<float>(faces, false, &TopologyLevel::GetFaceDiagonalSharpness),
-             "get_face_diagonal_sharpness()\n\nSharpness of the crease that crosses each hexagon "
-             "from its vertex 0 to its\nvertex 3, or 0: float32, shape (faces,).")
+             "get_face_diagonal_sharpness()\n\n"
+             "float32, shape (faces,): sharpness of the crease that crosses each hexagon from its "
+             "vertex 0\n"
+             "to its vertex 3, or 0.")
         .def("get_edge_sharpness", makeArray<float>(edges, true, &TopologyLevel::GetEdgeSharpness),
              "get_edge_sharpness()\n\nfloat32, shape (edges,).")
         .def("is_edge_boundary", makeMask(edges, true, &TopologyLevel::IsEdgeBoundary),
-             "is_edge_boundary()\n\nWhether each edge is one: bool, shape (edges,).")
+             "is_edge_boundary()\n\n"
+             "bool, shape (edges,): whether each edge is a boundary.")
         .def("is_edge_non_manifold", makeMask(edges, true, &TopologyLevel::IsEdgeNonManifold),
-             "is_edge_non_manifold()\n\nOf level 0: whether each edge came from a non-manifold "
-             "one: bool, shape (edges,).")
+             "is_edge_non_manifold()\n\n"
+             "bool, shape (edges,): whether each edge of level 0 was part of a non-manifold edge.")
         .def("get_vertex_sharpness",
              makeArray<float>(vertices, false, &TopologyLevel::GetVertexSharpness),
              "get_vertex_sharpness()\n\nfloat32, shape (vertices,).")
         .def("get_vertex_rules",
              makeArray<std::uint8_t>(vertices, true, &TopologyLevel::GetVertexRule),
-             "get_vertex_rules()\n\nA Rule for each vertex: uint8, shape (vertices,).")
+             "get_vertex_rules()\n\n"
+             "uint8, shape (vertices,): the Rule of each vertex.")
         .def("is_vertex_boundary", makeMask(vertices, true, &TopologyLevel::IsVertexBoundary),
-             "is_vertex_boundary()\n\nWhether each vertex is on one: bool, shape (vertices,).")
+             "is_vertex_boundary()\n\n"
+             "bool, shape (vertices,): whether each vertex is on a boundary.")
         .def("is_vertex_corner", makeMask(vertices, true, &TopologyLevel::IsVertexCorner),
-             "is_vertex_corner()\n\nWhether each vertex has exactly one face: bool, shape "
-             "(vertices,).")
+             "is_vertex_corner()\n\n"
+             "bool, shape (vertices,): whether each vertex has exactly one face.")
         .def("is_vertex_non_manifold",
              makeMask(vertices, true, &TopologyLevel::IsVertexNonManifold),
              "is_vertex_non_manifold()\n\nbool, shape (vertices,).")
         .def("is_vertex_valence_regular",
              makeMask(vertices, true, &TopologyLevel::IsVertexValenceRegular),
-             "is_vertex_valence_regular()\n\nWhether each vertex has three faces, or one or two "
-             "at a boundary: bool,\nshape (vertices,).");
+             "is_vertex_valence_regular()\n\n"
+             "bool, shape (vertices,): whether each vertex has three faces, or one or two at a "
+             "boundary.");
 }
 
 void bindParents(py::class_<Level> &level) {
     auto const faces = &TopologyLevel::GetNumFaces;
     level
         .def("get_face_base_faces", &getBaseFaces,
-             "get_face_base_faces(half=0)\n\nThe face of level 0 that a half of each face lies in, "
-             "exactly: int32, shape\n(faces,).  Both halves of most faces lie in one.",
+             "get_face_base_faces(half=0)\n\n"
+             "int32, shape (faces,): the face of level 0 that contains the given half of each "
+             "face.  Most\n"
+             "faces have both halves in one base face.",
              py::arg("half") = 0)
         .def("get_face_base_coords", &getBaseCoords,
-             "get_face_base_coords(half=0)\n\nWhere the corners of each face lie in its base face, "
-             "or in that of a half, in\na plane: a quad is the unit square, a triangle has the "
-             "corners (0, 0), (1, 0) and\n(0, 1), others are regular polygons with the first edge "
-             "from (0, 0) to (1, 0).\nfloat32, shape (corners, 2); nan at the two "
-             "corners of a face with two base\nfaces that the half does not have: half 0 has 0, 3, "
-             "4, 5, half 1 has 3, 0, 1, 2.\nRaises ValueError behind other than hexagonal steps.",
+             "get_face_base_coords(half=0)\n\n"
+             "float32, shape (corners, 2): coordinates of each corner in the base face of the "
+             "given half.\n"
+             "A quad is the unit square; a triangle has the corners (0, 0), (1, 0) and (0, 1); "
+             "other faces are\n"
+             "regular polygons whose first edge runs from (0, 0) to (1, 0).  In a face with two "
+             "base faces\n"
+             "the two corners outside the half are nan: half 0 has corners 0, 3, 4, 5, half 1 has "
+             "3, 0, 1, 2.\n"
+             "Raises ValueError after steps that are not hexagonal.",
              py::arg("half") = 0)
         .def("get_face_surface_faces", &getSurfaceFaces,
-             "get_face_surface_faces(half=0)\n\nThe face of the surface level, 0 or behind a first "
-             "step 1, that a half of each face\nlies in: int32, shape (faces,).  A SurfaceFactory "
-             "has its surface.  Raises ValueError\nbefore that level, and behind other than "
-             "hexagonal steps.",
+             "get_face_surface_faces(half=0)\n\n"
+             "int32, shape (faces,): the face of the surface level that contains the given half of "
+             "each\n"
+             "face.  A SurfaceFactory makes its surface.  The surface level is 0, or 1 with a "
+             "first step.\n"
+             "Raises ValueError before that level, and after steps that are not hexagonal.",
              py::arg("half") = 0)
         .def("get_face_surface_coords", &getSurfaceCoords,
-             "get_face_surface_coords(half=0)\n\nAs get_face_base_coords, by u and v of that face: "
-             "where its surface has the limits of\nthe vertices.  Faces of five and more vertices "
-             "have a sub-face for each corner, as in\nOpenSubdiv's Bfr.  Raises ValueError as "
-             "get_face_surface_faces.",
+             "get_face_surface_coords(half=0)\n\n"
+             "As get_face_base_coords(), but (u, v) of the surface of get_face_surface_faces(): "
+             "evaluated\n"
+             "there, it has the limits of the vertices.  Faces of five and more vertices have a "
+             "sub-face for\n"
+             "each corner, as in OpenSubdiv's Bfr.  Raises ValueError as get_face_surface_faces().",
              py::arg("half") = 0)
         .def("is_face_base_split", makeMask(faces, false, &TopologyLevel::IsFaceBaseSplit),
-             "is_face_base_split()\n\nWhether the halves of each face lie in two base faces: bool, "
-             "shape (faces,).")
+             "is_face_base_split()\n\n"
+             "bool, shape (faces,): whether the halves of each face lie in two base faces.")
         .def("get_face_parent_faces",
              makeArray<int>(faces, false, &TopologyLevel::GetFaceParentFace),
-             "get_face_parent_faces()\n\nOf the level before: int32, shape (faces,).  For the face "
-             "of an edge, the edge's\nfirst face.")
+             "get_face_parent_faces()\n\n"
+             "int32, shape (faces,): the face of the level before; for a face that an edge made, "
+             "the edge's\n"
+             "first face.")
         .def("get_face_parent_edges",
              makeArray<int>(faces, false, &TopologyLevel::GetFaceParentEdge),
-             "get_face_parent_edges()\n\nint32, shape (faces,); -1 for faces that no edge made.")
+             "get_face_parent_edges()\n\n"
+             "int32, shape (faces,): the edge that made each face, or -1.")
         .def("get_face_parent_vertices",
              makeArray<int>(faces, false, &TopologyLevel::GetFaceParentVertex),
-             "get_face_parent_vertices()\n\nint32, shape (faces,); -1 for faces that no vertex "
-             "made.")
+             "get_face_parent_vertices()\n\n"
+             "int32, shape (faces,): the vertex that made each face, or -1.")
         .def("get_edge_child_faces",
              makeArray<int>(&TopologyLevel::GetNumEdges, true, &TopologyLevel::GetEdgeChildFace),
-             "get_edge_child_faces()\n\nThe face that each edge makes: int32, shape (edges,); -1 "
-             "for none.")
+             "get_edge_child_faces()\n\n"
+             "int32, shape (edges,): the face that each edge makes, or -1.")
         .def("get_vertex_child_vertices",
              makeArray<int>(&TopologyLevel::GetNumVertices, true,
                             &TopologyLevel::GetVertexChildVertex),
-             "get_vertex_child_vertices()\n\nThe vertex that each vertex becomes: int32, shape "
-             "(vertices,); -1 for none.");
+             "get_vertex_child_vertices()\n\n"
+             "int32, shape (vertices,): the vertex of the next level that each vertex becomes, or "
+             "-1.");
 }
 
 void bindFVar(py::class_<Level> &level) {
@@ -375,19 +395,23 @@ void bindFVar(py::class_<Level> &level) {
             },
             "get_num_fvar_values(channel=0)", py::arg("channel") = 0)
         .def("get_face_fvar_values", &getFaceFVarValues,
-             "get_face_fvar_values(channel=0)\n\nThe value at each corner: int32, shape (corners,)."
-             "  Of a face that a seam\ncrosses, the two corners on it have the values of half 0.",
+             "get_face_fvar_values(channel=0)\n\n"
+             "int32, shape (corners,): the value at each corner.  In a face that a seam crosses, "
+             "the two\n"
+             "corners on the seam have the values of half 0.",
              py::arg("channel") = 0)
-        .def(
-            "get_fvar_split_faces", &getSplitFaces,
-            "get_fvar_split_faces(channel=0)\n\nThe faces that a seam crosses, and the values of "
-            "their halves: a pair of int32,\nshapes (n,) and (n, 2, 4).  Half 0 has the corners 0, "
-            "3, 4, 5 of the hexagon, half 1\nthe corners 3, 0, 1, 2.",
-            py::arg("channel") = 0)
+        .def("get_fvar_split_faces", &getSplitFaces,
+             "get_fvar_split_faces(channel=0)\n\n"
+             "Returns (faces, values), int32, shapes (n,) and (n, 2, 4): the faces that a seam "
+             "crosses, and the\n"
+             "values of their halves.  Half 0 has the corners 0, 3, 4, 5 of the hexagon, half 1 "
+             "the corners\n"
+             "3, 0, 1, 2.",
+             py::arg("channel") = 0)
         .def("does_edge_fvar_topology_match",
              matchFVar(&TopologyLevel::GetNumEdges, &TopologyLevel::DoesEdgeFVarTopologyMatch),
-             "does_edge_fvar_topology_match(channel=0)\n\nWhether both sides of each edge have the "
-             "same values: bool, shape (edges,).",
+             "does_edge_fvar_topology_match(channel=0)\n\n"
+             "bool, shape (edges,): whether both sides of each edge have the same values.",
              py::arg("channel") = 0)
         .def("does_vertex_fvar_topology_match",
              matchFVar(&TopologyLevel::GetNumVertices, &TopologyLevel::DoesVertexFVarTopologyMatch),
@@ -584,24 +608,26 @@ void bindDrawing(py::module_ &module) {
         "Args:\n"
         "    vertex_offset: added to every vertex, not negative\n"
         "    cut_base_faces: cuts hexagons that lie in two base faces\n"
-        "    labels: a number for each base face, say its material: integers, shape\n"
-        "        (base faces,); cuts hexagons whose halves have different ones\n"
+        "    labels: a number for each base face, for example its material: integers, shape\n"
+        "        (base faces,); cuts hexagons whose halves have different labels\n"
         "    cut_creases: a CreaseCuts, or its name\n"
-        "    fvar_channels: whose seams cut\n"
-        "    sides: the LimitSides of the level, for normals; None for none\n"
-        "    split_vertices: whether vertices are those of sides\n"
-        "    separate_vertices: whether each vertex is to have one value of each channel, one\n"
-        "        side and, with generate_base_coords, one place in one base face\n"
-        "    generate_base_coords: whether places in base faces are made; cuts these\n"
+        "    fvar_channels: the channels whose seams cut hexagons\n"
+        "    sides: the LimitSides of the level, for normals by side; or None\n"
+        "    split_vertices: 'vertices' are indices of sides\n"
+        "    separate_vertices: makes a vertex for each combination of vertex, values of the "
+        "channels,\n"
+        "        side and, with generate_base_coords, coordinates in a base face\n"
+        "    generate_base_coords: makes coordinates in base faces; cuts as cut_base_faces\n"
         "    draw_holes: whether holes are drawn\n\n"
         "Returns a dict.  By corner, int32 of the shape (corners,): 'vertices', 'sides' with\n"
         "sides, and 'fvar_values', a list with an array for each channel; 'base_coords', float32\n"
         "of the shape (corners, 2).  By polygon, int32 of the shape (polygons,): 'sizes', "
         "'faces',\n"
-        "'base_faces', and 'labels' with labels.  With separate_vertices, 'drawn_vertices' is a\n"
-        "dict with what these are, int32 of the shape (drawn vertices,): 'vertices',\n"
-        "'fvar_values', 'sides' and 'base_coords' as by corner, and with these 'base_faces'.  The\n"
-        "first are the others' vertices in their order.\n"
+        "'base_faces', and 'labels' with labels.  With separate_vertices 'drawn_vertices' is a "
+        "dict\n"
+        "that describes each drawn vertex, int32 of the shape (drawn vertices,): 'vertices',\n"
+        "'fvar_values', 'sides', 'base_coords' and, with these, 'base_faces'.  The first drawn\n"
+        "vertices are the level's vertices in their order.\n"
         "Raises StatusError.",
         &createPolygonIndices);
     defineDrawing(
@@ -622,16 +648,17 @@ void BindLevel(py::module_ &module) {
     py::class_<Level> level(
         module, "TopologyLevel",
         "One level of a refined mesh, from TopologyRefiner.get_level().\n\n"
-        "Properties that are arrays show the level's own memory: they are read-only, keep the\n"
-        "refiner, and hold it from refining again.  Functions make new arrays.\n\n"
-        "The last level has face_offsets and face_vertices alone, and what needs no more, unless "
-        "it\n"
-        "was made with full_topology_in_last_level=True; ValueError says so.  RuntimeError is "
-        "raised\n"
-        "once the refiner refined again.");
+        "Properties that are arrays are read-only views of the level's memory: they keep the "
+        "refiner\n"
+        "alive, and prevent it from being refined again.  Functions return new arrays.\n\n"
+        "Without full_topology_in_last_level=True the last level has face_offsets, face_vertices "
+        "and\n"
+        "what follows from them; everything else raises ValueError.  After the refiner was "
+        "refined\n"
+        "again, everything raises RuntimeError.");
     level
         .def_property_readonly("depth", &Level::GetDepth,
-                               "Refinements from the base mesh to this level.")
+                               "Number of refinements from the base mesh to this level.")
         .def_property_readonly("num_vertices", count(&TopologyLevel::GetNumVertices),
                                "Vertices of this level.")
         .def_property_readonly("num_faces", count(&TopologyLevel::GetNumFaces),
@@ -639,7 +666,7 @@ void BindLevel(py::module_ &module) {
         .def_property_readonly("num_edges", count(&TopologyLevel::GetNumEdges),
                                "Edges of this level.")
         .def_property_readonly("num_face_vertices", count(&TopologyLevel::GetNumFaceVertices),
-                               "The number of corners.")
+                               "Number of corners of all faces.")
         .def_property_readonly("num_boundary_edges", count(&TopologyLevel::GetNumBoundaryEdges),
                                "Edges with one face.")
         .def_property_readonly("num_fvar_channels", count(&TopologyLevel::GetNumFVarChannels),
@@ -654,34 +681,40 @@ void BindLevel(py::module_ &module) {
                 self.Read([&](TopologyLevel const &topology) { topology.Validate(&status); });
                 RaiseUnlessOk(status);
             },
-            "validate()\n\nChecks every invariant of the topology by direct search.  Raises "
-            "StatusError, which\nnames the first component that breaks one.");
+            "validate()\n\n"
+            "Checks every invariant of the topology.  Raises StatusError, which names the first "
+            "component\n"
+            "that breaks one.");
     bindRelations(level);
     bindTags(level);
     bindParents(level);
     bindFVar(level);
 
-    py::class_<LimitSides>(
-        module, "LimitSides",
-        "LimitSides(level)\n\n"
-        "The sides of the vertices of a level with full topology: where two or more infinitely\n"
-        "sharp edges meet, the surface has a tangent plane for each part of the faces between.\n"
-        "Side 0 of each vertex has the vertex's index; further ones follow the vertices.")
+    py::class_<LimitSides>(module, "LimitSides",
+                           "LimitSides(level)\n\n"
+                           "The sides of the vertices of a level with full topology.\n\n"
+                           "Where infinitely sharp edges meet at a vertex, they part its faces "
+                           "into sides, and the surface\n"
+                           "has a tangent plane for each side.  Side 0 of a vertex has the "
+                           "vertex's index; further sides\n"
+                           "follow the vertices.")
         .def(py::init(&createSides), py::arg("level"))
         .def_property_readonly("num_vertices", &LimitSides::GetNumVertices,
                                "Vertices of the level.")
         .def_property_readonly(
             "num_sides", &LimitSides::GetNumSides,
-            "Sides of all vertices: one each, and further ones along sharp creases.")
+            "Number of sides: one for each vertex, and further ones along sharp creases.")
         .def("get_vertices", listSides(&LimitSides::GetVertex),
-             "get_vertices()\n\nThe vertex of each side: int32, shape (sides,).")
-        .def(
-            "get_local_sides", listSides(&LimitSides::GetLocalSide),
-            "get_local_sides()\n\nWhich of its vertex's sides each side is: int32, shape (sides,).")
+             "get_vertices()\n\n"
+             "int32, shape (sides,): the vertex of each side.")
+        .def("get_local_sides", listSides(&LimitSides::GetLocalSide),
+             "get_local_sides()\n\n"
+             "int32, shape (sides,): the number of each side among the sides of its vertex.")
         .def("find_sides", &findSides,
-             "find_sides(level, half=0)\n\nThe side on which each face has the vertex at each of "
-             "its corners: int32, shape\n(corners,).  Of a hexagon with a sharp diagonal, in that "
-             "half.",
+             "find_sides(level, half=0)\n\n"
+             "int32, shape (corners,): for each corner of each face, the side of its vertex on "
+             "which the\n"
+             "face lies.  For a hexagon with a sharp diagonal: the side of the given half, 0 or 1.",
              py::arg("level"), py::arg("half") = 0);
 
     bindDrawing(module);

@@ -208,30 +208,27 @@ void BindPatches(py::module_ &module) {
         module, "PatchTable",
         "PatchTable(refiner, isolation_level, *, generate_fvar_tables=False,\n"
         "           generate_fvar_legacy_linear_patches=True)\n\n"
-        "The limit surface as bicubic Gregory patches, as FarExt::PatchTableFactory makes them: "
-        "those of\nthe faces of a level.\n\n"
+        "The limit surface as bicubic Gregory patches: those of FarExt::PatchTableFactory.\n\n"
         "Args:\n"
-        "    isolation_level: that of the surface or more, and less than the refiner's max_level, "
-        "which\n"
-        "        needs full topology: refine_uniform(isolation_level + 1,\n"
-        "        full_topology_in_last_level=True)\n"
-        "    generate_fvar_tables: whether there are patches of the face-varying channels, too\n"
-        "    generate_fvar_legacy_linear_patches: whether all of these are bilinear; else those "
-        "of\n"
-        "        linear channels alone\n\n"
+        "    isolation_level: the level whose faces become patches, less than the refiner's "
+        "max_level.\n"
+        "        Refine by refine_uniform(isolation_level + 1, full_topology_in_last_level=True)\n"
+        "    generate_fvar_tables: also makes patches of the face-varying channels\n"
+        "    generate_fvar_legacy_linear_patches: True: patches of all channels are bilinear; "
+        "False:\n"
+        "        those of linear channels alone\n\n"
         "Nothing refers to the refiner afterwards.  Raises StatusError.")
         .def(py::init(&createTable), py::arg("refiner"), py::arg("isolation_level"), py::kw_only(),
              py::arg("generate_fvar_tables") = false,
              py::arg("generate_fvar_legacy_linear_patches") = true)
-        .def_property_readonly("num_patches", &PatchTable::GetNumPatches,
-                               "Patches of all base faces.")
+        .def_property_readonly("num_patches", &PatchTable::GetNumPatches, "Number of patches.")
         .def_property_readonly("num_control_vertices", &PatchTable::GetNumControlVertices,
                                "Vertices of the base mesh.")
         .def_property_readonly("num_local_points", &PatchTable::GetNumLocalPoints,
-                               "Points that make_points() computes besides the control vertices.")
+                               "Number of points that make_points() adds to the control vertices.")
         .def_property_readonly(
             "local_point_stencil_table", [](PatchTable const &self) { return self.localPoints; },
-            "StencilTable: the local points in terms of the control vertices.")
+            "The StencilTable that makes the local points from the control vertices.")
         .def_property_readonly(
             "patch_vertices",
             [](py::object const &self) {
@@ -239,30 +236,30 @@ void BindPatches(py::module_ &module) {
                 return View(table.evaluated->GetPatchIndexBuffer(),
                             {py::ssize_t(table.GetNumPatches()), py::ssize_t(kNumPoints)}, self);
             },
-            "int32, shape (patches, 20), a view: the points of each, of make_points().")
+            "int32, shape (patches, 20), a view: indices into the result of make_points().")
         .def_property_readonly(
             "faces",
             [](PatchTable const &self) {
                 return listFaces(self, [](PatchMap const &map, int p) { return map.GetFace(p); });
             },
-            "int32, shape (patches,): the face of the surface level that each lies in.")
+            "int32, shape (patches,): the face of the surface level that has each patch.")
         .def_property_readonly(
             "base_faces",
             [](PatchTable const &self) {
                 return listFaces(self,
                                  [](PatchMap const &map, int p) { return map.GetBaseFace(p); });
             },
-            "int32, shape (patches,): the face of level 0 that each lies in.")
-        .def_property_readonly(
-            "coords", &listCoords,
-            "float64, shape (patches, 4, 2): u and v of the four corners of each in its face.")
+            "int32, shape (patches,): the face of level 0 that has each patch.")
+        .def_property_readonly("coords", &listCoords,
+                               "float64, shape (patches, 4, 2): u and v of the four corners of "
+                               "each patch in its base face.")
         .def_property_readonly("num_fvar_channels", &PatchTable::GetNumFVarChannels,
-                               "Channels that have patches.")
+                               "Number of channels that have patches.")
         .def(
             "local_point_fvar_stencil_table",
             [](PatchTable const &self, int channel) { return self.GetLocalPoints(channel); },
             "local_point_fvar_stencil_table(channel=0)\n\n"
-            "StencilTable: the local points of a channel in terms of its values.",
+            "The StencilTable that makes the local points of a channel from its values.",
             py::arg("channel") = 0)
         .def(
             "patch_fvar_values",
@@ -275,8 +272,9 @@ void BindPatches(py::module_ &module) {
                             self);
             },
             "patch_fvar_values(channel=0)\n\n"
-            "int32, shape (patches, 20) or, of bilinear ones, (patches, 4), a view: the points of "
-            "each, of\nmake_fvar_points().",
+            "int32, shape (patches, 20), or (patches, 4) where patches are bilinear, a view: "
+            "indices into\n"
+            "the result of make_fvar_points().",
             py::arg("channel") = 0)
         .def(
             "make_fvar_points",
@@ -284,10 +282,9 @@ void BindPatches(py::module_ &module) {
                 return makePoints(self.GetLocalPoints(channel), values);
             },
             "make_fvar_points(values, channel=0)\n\n"
-            "The points of the patches of a channel: float32, shape (values + local points, "
-            "width).\n\n"
+            "The points of a channel's patches: float32, shape (values + local points, width).\n\n"
             "Args:\n"
-            "    values: of level 0, shape (values, width)",
+            "    values: the channel's values of level 0, shape (values, width)",
             py::arg("values"), py::arg("channel") = 0)
         .def(
             "evaluate_fvar",
@@ -297,10 +294,10 @@ void BindPatches(py::module_ &module) {
                 return evaluate(self, patches, st, points, 1, channel);
             },
             "evaluate_fvar(patches, st, points, channel=0)\n\n"
-            "The values of a channel at places of patches: float32, shape (n, width).\n\n"
+            "Values of a face-varying channel: float32, shape (n, width).\n\n"
             "Args:\n"
-            "    patches, st: as of evaluate()\n"
-            "    points: those of make_fvar_points()",
+            "    patches, st: as for evaluate()\n"
+            "    points: the result of make_fvar_points()",
             py::arg("patches"), py::arg("st"), py::arg("points"), py::arg("channel") = 0)
         .def(
             "make_points",
@@ -308,14 +305,16 @@ void BindPatches(py::module_ &module) {
                 return makePoints(self.localPoints, values);
             },
             "make_points(values)\n\n"
-            "The points of patches: float32, shape (control vertices + local points, width).\n\n"
+            "The points of the patches: float32, shape (control vertices + local points, "
+            "width).\n\n"
             "Args:\n"
-            "    values: of the control vertices, shape (control vertices, width)",
+            "    values: data of the control vertices, shape (control vertices, width)",
             py::arg("values"))
         .def("find_places", &findPlaces,
              "find_places(faces, uv)\n\n"
-             "The patches that have places of faces of the surface level: a tuple of int32, shape "
-             "(n,), -1\nwhere there is none, and of st, float64, shape (n, 2).\n\n"
+             "Finds the patch at each (face, u, v) of the surface level.\n\n"
+             "Returns (patches, st): int32, shape (n,), -1 where there is no patch; and float64, "
+             "shape (n, 2).\n\n"
              "Args:\n"
              "    faces: integers, shape (n,)\n"
              "    uv: shape (n, 2)",
@@ -325,27 +324,26 @@ void BindPatches(py::module_ &module) {
             [](PatchTable const &self, py::object const &patches, py::object const &st,
                py::object const &points) { return evaluate(self, patches, st, points, 1); },
             "evaluate(patches, st, points)\n\n"
-            "The surface at places of patches: float32, shape (n, width).\n\n"
+            "Points of the surface: float32, shape (n, width).\n\n"
             "Args:\n"
-            "    patches: integers, shape (n,)\n"
-            "    st: shape (n, 2), from 0 to 1\n"
-            "    points: those of make_points()",
+            "    patches: the patch of each point, integers, shape (n,)\n"
+            "    st: s and t of each point in its patch, shape (n, 2), from 0 to 1\n"
+            "    points: the result of make_points()",
             py::arg("patches"), py::arg("st"), py::arg("points"))
         .def(
             "evaluate_with_derivatives",
             [](PatchTable const &self, py::object const &patches, py::object const &st,
                py::object const &points) { return evaluate(self, patches, st, points, 3); },
             "evaluate_with_derivatives(patches, st, points)\n\n"
-            "Points, as evaluate(), and their derivatives by s and by t: a tuple of three.",
+            "Returns (points, ds, dt): points as evaluate(), and their derivatives by s and t.",
             py::arg("patches"), py::arg("st"), py::arg("points"))
         .def(
             "evaluate_with_second_derivatives",
             [](PatchTable const &self, py::object const &patches, py::object const &st,
                py::object const &points) { return evaluate(self, patches, st, points, 6); },
             "evaluate_with_second_derivatives(patches, st, points)\n\n"
-            "Points, their derivatives by s and by t, and second derivatives by s twice, by s and "
-            "t, "
-            "and\nby t twice: a tuple of six.",
+            "Returns (points, ds, dt, dss, dst, dtt): points as evaluate(), first and second "
+            "derivatives.",
             py::arg("patches"), py::arg("st"), py::arg("points"));
 }
 

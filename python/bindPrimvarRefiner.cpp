@@ -203,35 +203,44 @@ void BindPrimvarRefiner(py::module_ &module) {
     py::class_<PrimvarRefinement>(
         module, "PrimvarRefiner",
         "PrimvarRefiner(refiner)\n\n"
-        "Computes data of one level from those of the level before, without a table.\n\n"
-        "Sources are float64, or numbers taken as float32, of the shape (elements,) or\n"
-        "(elements, length); the destination has the same type and length, and is made for None.  "
-        "It is returned.\n"
-        "RefinementEvaluator does the same in parallel, for float32.")
+        "Computes the data of a level from the data of the level before, without a table, in "
+        "float32 or\n"
+        "float64.  RefinementEvaluator is parallel and faster, in float32.\n\n"
+        "Sources have the shape (elements,) or (elements, length).  float64 stays; other numbers "
+        "become\n"
+        "float32.  A destination has the source's type and length; None allocates one.  Functions "
+        "return\n"
+        "the destination.")
         .def(py::init<std::shared_ptr<Refiner>>(), py::arg("refiner").none(false))
         .def("interpolate", &PrimvarRefinement::Interpolate,
-             "interpolate(level, src, dst=None)\n\nVertex data of a level, 1 ... max_level, from "
-             "src of the level before: an element\nfor each vertex.",
-             py::arg("level"), py::arg("src"), py::arg("dst") = py::none())
-        .def("interpolate_varying", &PrimvarRefinement::InterpolateVarying,
-             "interpolate_varying(level, src, dst=None)\n\nVarying data, linearly: an element for "
+             "interpolate(level, src, dst=None)\n\n"
+             "Vertex data of a level, 1 ... max_level, from those of the level before: an element "
+             "for\n"
              "each vertex.",
              py::arg("level"), py::arg("src"), py::arg("dst") = py::none())
+        .def("interpolate_varying", &PrimvarRefinement::InterpolateVarying,
+             "interpolate_varying(level, src, dst=None)\n\n"
+             "Varying data of a level, interpolated linearly: an element for each vertex.",
+             py::arg("level"), py::arg("src"), py::arg("dst") = py::none())
         .def("interpolate_face_uniform", &PrimvarRefinement::InterpolateFaceUniform,
-             "interpolate_face_uniform(level, src, dst=None)\n\nData of any type, of which each "
-             "face takes that of its parent face: shape (faces, ...).",
+             "interpolate_face_uniform(level, src, dst=None)\n\n"
+             "Data by face, of any type, shape (faces, ...): each face takes the value of its "
+             "parent face.",
              py::arg("level"), py::arg("src"), py::arg("dst") = py::none())
         .def("interpolate_face_varying", &PrimvarRefinement::InterpolateFaceVarying,
-             "interpolate_face_varying(level, src, dst=None, channel=0)\n\nFace-varying data: an "
-             "element for each value of the channel.",
+             "interpolate_face_varying(level, src, dst=None, channel=0)\n\n"
+             "Face-varying data of a level: an element for each value of the channel.",
              py::arg("level"), py::arg("src"), py::arg("dst") = py::none(), py::arg("channel") = 0)
         .def("limit", &PrimvarRefinement::Limit,
-             "limit(src, dst=None)\n\nPoints of the limit surface at the vertices of the last "
-             "level, which has full\ntopology, from src of that level.  Raises StatusError.",
+             "limit(src, dst=None)\n\n"
+             "Points of the limit surface at the vertices of the last level, from the data of this "
+             "level.\n"
+             "The level has full topology.  Raises StatusError.",
              py::arg("src"), py::arg("dst") = py::none())
         .def("limit_with_derivatives", &PrimvarRefinement::LimitWithDerivatives,
-             "limit_with_derivatives(src, dst=None, du=None, dv=None)\n\nPoints, as limit(), and "
-             "both first derivatives, on side 0 of each vertex.\n\nReturns (dst, du, dv).",
+             "limit_with_derivatives(src, dst=None, du=None, dv=None)\n\n"
+             "Points as limit(), and both first derivatives on side 0 of each vertex.\n\n"
+             "Returns (dst, du, dv).",
              py::arg("src"), py::arg("dst") = py::none(), py::arg("du") = py::none(),
              py::arg("dv") = py::none());
 }

@@ -441,31 +441,32 @@ void BindRefiner(py::module_ &module) {
         "Args:\n"
         "    faces: the vertices of each face: a sequence of sequences, an integer array of the\n"
         "        shape (faces, sides) or, with face_offsets, one of all faces, shape (corners,)\n"
-        "    num_vertices: of the mesh; None: as many as the faces need.  That raises ValueError\n"
-        "        for more than 65536 and more than 16 for each corner, which take much memory\n"
-        "        and mostly come of a wrong index\n"
+        "    num_vertices: vertices of the mesh; None: the largest index plus 1.  None raises\n"
+        "        ValueError for more than 65536 that are also more than 16 for each corner: a "
+        "wrong\n"
+        "        index is likely\n"
         "    face_offsets: integers, shape (faces + 1,): face f has the corners from\n"
         "        face_offsets[f] to face_offsets[f + 1]\n"
         "    creases: a pair (edges, sharpness) of integers, shape (creases, 2), and numbers, "
         "shape\n"
-        "        (creases,), or one number for all; from 10 on a crease is sharp for ever\n"
-        "    corners: a pair (vertices, sharpness), likewise\n"
+        "        (creases,), or one number for all; from 10 on a crease is infinitely sharp\n"
+        "    corners: a pair (vertices, sharpness) of the same kind\n"
         "    holes: faces that are not drawn\n"
         "    fvar_channels: for each face-varying channel the values at the corners: integers,\n"
         "        shape (corners,)\n"
-        "    num_fvar_values: of each channel; None: as many as it needs, within the same bounds\n"
+        "    num_fvar_values: the number of values of each channel; None: as for num_vertices\n"
         "    is_left_handed: whether the faces run clockwise\n"
-        "    vtx_boundary_interpolation: a VtxBoundaryInterpolation, or its name; so the others\n\n"
-        "The defaults are the paper's, as in C++ and hexrefine, so that results are its own.\n"
-        "Renderers want face_mask='smooth', vtx_boundary_interpolation='edge_and_corner' and, for\n"
-        "triangles, first_step='truncate', as hexrefine --like renderer; hexview and the Blender\n"
-        "add-on begin with 'smooth'.\n\n"
+        "    vtx_boundary_interpolation and all after it: a value of the enumeration, or its "
+        "name\n\n"
+        "The defaults are the paper's, as in C++ and hexrefine.  Renderers want "
+        "face_mask='smooth',\n"
+        "vtx_boundary_interpolation='edge_and_corner' and, for triangles, first_step='truncate', "
+        "as\n"
+        "hexrefine --like renderer.  hexview and the Blender add-on begin with 'smooth'.\n\n"
         "Integers may have any type and are copied.  Raises StatusError for a mesh that cannot be\n"
         "refined; its code, component and index say why.  Warns with StatusWarning.\n\n"
-        "Threads may share a refiner.  While arrays show its levels, refining again raises\n"
-        "BufferError.  A copy, and a pickled refiner, is made of the same mesh and refined as far, "
-        "with\n"
-        "the same bits.")
+        "Threads may share a refiner.  While views of its levels exist, refining again raises\n"
+        "BufferError.  Copies and pickled refiners have the same mesh, levels and bits.")
         .def(py::init(&createRefiner), py::arg("faces"), py::arg("num_vertices") = py::none(),
              py::kw_only(), py::arg("face_offsets") = py::none(), py::arg("creases") = py::none(),
              py::arg("corners") = py::none(), py::arg("holes") = py::none(),
@@ -477,23 +478,25 @@ void BindRefiner(py::module_ &module) {
         .def(py::pickle(&getState, &makeOfState))
         .def("refine_uniform", &refineUniformly,
              "refine_uniform(level, full_topology_in_last_level=False, face_labels=None)\n\n"
-             "Refines all faces so many times, in place of earlier refinements.  The last level "
-             "has\n"
-             "face-vertices alone unless asked for more.  face_labels, integers, shape (faces,), "
-             "are\n"
-             "those that first_step 'truncate' keeps apart: every face lies in base faces of one.\n"
-             "Raises StatusError.",
+             "Refines all faces up to a level; replaces earlier refinements.  Raises "
+             "StatusError.\n\n"
+             "Args:\n"
+             "    full_topology_in_last_level: False: the last level has the vertices of its faces "
+             "alone\n"
+             "    face_labels: a label for each base face, integers, shape (faces,): with "
+             "first_step\n"
+             "        'truncate' no face spans base faces of different labels",
              py::arg("level"), py::arg("full_topology_in_last_level") = false,
              py::arg("face_labels") = py::none())
         .def("refine_coplanar", &refineByPositions,
              "refine_coplanar(rest_positions, level, angle_tolerance=0.1, close_gaps=True,\n"
              "                full_topology_in_last_level=False)\n\n"
-             "Refines as the paper's stage 3 says: edges between faces of the same normal make "
-             "quads.\n\n"
+             "Refines by the paper's stage 3: edges between coplanar faces make quads.\n\n"
              "Args:\n"
              "    rest_positions: float64, or numbers taken as float32, shape (vertices, 3)\n"
-             "    angle_tolerance: largest angle in degrees between normals taken as equal\n"
-             "    close_gaps: False leaves the gaps open, as printed in the paper",
+             "    angle_tolerance: faces whose normals differ by at most so many degrees are "
+             "coplanar\n"
+             "    close_gaps: False leaves the gaps open, as the paper prints them",
              py::arg("rest_positions"), py::arg("level"), py::arg("angle_tolerance") = 0.1,
              py::arg("close_gaps") = true, py::arg("full_topology_in_last_level") = false)
         .def(
@@ -506,10 +509,11 @@ void BindRefiner(py::module_ &module) {
         .def(
             "get_level",
             [](std::shared_ptr<Refiner> const &self, int level) { return Level(self, level); },
-            "get_level(level)\n\nThe TopologyLevel of that depth, 0 ... max_level.",
+            "get_level(level)\n\n"
+            "The TopologyLevel of a level, 0 ... max_level.",
             py::arg("level"))
         .def_property_readonly("num_levels", property(&TopologyRefiner::GetNumLevels),
-                               "Levels, with level 0.")
+                               "Number of levels, including level 0.")
         .def_property_readonly("max_level", property(&TopologyRefiner::GetMaxLevel),
                                "The last level.")
         .def_property_readonly("is_uniform", property(&TopologyRefiner::IsUniform),

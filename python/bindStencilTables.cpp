@@ -249,13 +249,14 @@ py::object toScipy(py::object const &self, int derivative) {
 void bindTable(py::module_ &module) {
     constexpr char const *kOptions =
         "    interpolation_mode: a StencilMode or its name\n"
-        "    generate_control_verts: whether the control vertices come first\n"
-        "    generate_intermediate_levels: levels 1 ... L, else L alone\n"
-        "    factorize_intermediate_levels: indices are control vertices, else vertices of the\n"
-        "        level before\n"
-        "    max_level: L; None, or more than there are: the refiner's max_level\n"
-        "    fvar_channel: for 'face_varying', whose elements are the channel's values\n"
-        "    dtype: of the weights, float32 or float64; evaluators take float32\n";
+        "    generate_control_verts: starts the table with a row for each control vertex\n"
+        "    generate_intermediate_levels: True: rows of levels 1 ... max_level; False: of\n"
+        "        max_level alone\n"
+        "    factorize_intermediate_levels: True: stencils refer to control vertices; False: to\n"
+        "        vertices of the level before\n"
+        "    max_level: None, or a larger number: the refiner's max_level\n"
+        "    fvar_channel: the channel, with interpolation mode 'face_varying'\n"
+        "    dtype: type of the weights, float32 or float64; evaluators take float32\n";
     auto const doc = [&](std::string const &before, std::string const &after) {
         return before + kOptions + after;
     };
@@ -264,10 +265,11 @@ void bindTable(py::module_ &module) {
         doc("StencilTable(refiner, *, interpolation_mode='vertex', generate_control_verts=False,\n"
             "             generate_intermediate_levels=True, factorize_intermediate_levels=True,\n"
             "             max_level=None, fvar_channel=0, dtype='float32')\n\n"
-            "What refined vertices, or values, are in terms of control vertices.\n\n"
+            "Stencils of refined vertices, or face-varying values: weighted sums of control\n"
+            "vertices.\n\n"
             "Args:\n",
-            "\nIts arrays are views, and it does not change.  Nothing refers to the refiner "
-            "afterwards.\nRaises StatusError.")
+            "\nArrays are views.  A table never changes and does not need the refiner.\n"
+            "Raises StatusError.")
             .c_str())
         .def(py::init([](Refiner const &refiner, py::object const &mode, bool controlVerts,
                          bool intermediate, bool factorize, std::optional<int> maxLevel,
@@ -296,7 +298,7 @@ void bindTable(py::module_ &module) {
                 "                generate_control_verts=False, generate_intermediate_levels=True,\n"
                 "                factorize_intermediate_levels=True, max_level=None,\n"
                 "                fvar_channel=0, dtype='float32')\n\n"
-                "The table of the refined faces that lie in some base faces.\n\n"
+                "The table of the refined faces that lie in the given base faces.\n\n"
                 "Args:\n"
                 "    base_faces: integers, shape (n,), in any order\n",
                 "")
@@ -314,9 +316,8 @@ void bindTable(py::module_ &module) {
             },
             "get_vertices_of_faces(refiner, base_faces, level, *, interpolation_mode='vertex',\n"
             "                      fvar_channel=0)\n\n"
-            "The vertices, or values, that create_of_faces makes stencils for at a level, in "
-            "their\n"
-            "order: int32, shape (n,).",
+            "int32, shape (n,): the vertices, or values, of a level that have stencils in the\n"
+            "table of create_of_faces(), in the order of its stencils.",
             py::arg("refiner"), py::arg("base_faces"), py::arg("level"), py::kw_only(),
             py::arg("interpolation_mode") = "vertex", py::arg("fvar_channel") = 0)
         .def_static(
@@ -344,20 +345,20 @@ void bindTable(py::module_ &module) {
             [](StencilTable const &self) {
                 return visit(self, [](auto const &table) { return table.GetNumStencils(); });
             },
-            "Rows of the table, one for each refined vertex or value.")
+            "Number of rows, one for each refined vertex or value.")
         .def_property_readonly(
             "num_control_vertices",
             [](StencilTable const &self) {
                 return visit(self, [](auto const &table) { return table.GetNumControlVertices(); });
             },
-            "Control vertices, or values, that stencils refer to.")
+            "Number of control vertices, or face-varying values.")
         .def_property_readonly(
             "sizes", show([](auto const &table) -> decltype(auto) { return (table.GetSizes()); }),
-            "int32, shape (stencils,), a view: of how many elements each stencil is the sum.")
+            "int32, shape (stencils,), a view: the number of weights of each stencil.")
         .def_property_readonly(
             "offsets",
             show([](auto const &table) -> decltype(auto) { return (table.GetOffsets()); }),
-            "int32, shape (stencils,), a view: where the weights of each stencil begin.")
+            "int32, shape (stencils,), a view: the index of each stencil's first weight.")
         .def_property_readonly("control_indices", show([](auto const &table) -> decltype(auto) {
                                    return (table.GetControlIndices());
                                }),
@@ -367,10 +368,10 @@ void bindTable(py::module_ &module) {
             "float32 or float64, shape (weights,), a view.")
         .def(
             "to_scipy", [](py::object const &self) { return toScipy(self, 0); },
-            "to_scipy()\n\nA scipy.sparse.csr_matrix of the shape (stencils, control vertices) "
-            "that "
-            "shares the\ntable's memory; do not write to it.  Its product with control values are "
-            "the values.");
+            "to_scipy()\n\n"
+            "A scipy.sparse.csr_matrix, shape (stencils, control vertices), that shares the "
+            "table's\n"
+            "memory: do not write to it.  matrix @ control_values are the refined values.");
 }
 
 void bindLimitTable(py::module_ &module) {
@@ -380,46 +381,46 @@ void bindLimitTable(py::module_ &module) {
         "                  generate_further_sides=False, generate_face_centers=False,\n"
         "                  generate_1st_derivatives=True, factorize_intermediate_levels=True,\n"
         "                  dtype='float32')\n\n"
-        "Points of the limit surface and its first derivatives there, in terms of control\n"
-        "vertices, or of the vertices of the level.\n\n"
+        "Stencils of points on the limit surface and of the first derivatives there.\n\n"
         "Args:\n"
-        "    level: whose vertices and faces are meant, with full topology; -1: the last\n"
-        "    generate_vertices: whether each vertex has a point\n"
-        "    generate_further_sides: whether the further sides of vertices have, as LimitSides\n"
-        "        numbers them; after the vertices\n"
-        "    generate_face_centers: whether each face has; after those\n"
-        "    generate_1st_derivatives: whether the table has du_weights and dv_weights\n"
-        "    factorize_intermediate_levels: indices are control vertices, else vertices of the\n"
-        "        level: evaluators apply the table to refined values\n"
-        "    dtype: of the weights, float32 or float64; evaluators take float32\n\n"
+        "    level: the level that has the vertices and faces, with full topology; -1: the last\n"
+        "    generate_vertices: makes a stencil for each vertex\n"
+        "    generate_further_sides: after these, one for each further side, as LimitSides numbers "
+        "them\n"
+        "    generate_face_centers: after these, one for the center of each face\n"
+        "    generate_1st_derivatives: makes du_weights and dv_weights\n"
+        "    factorize_intermediate_levels: True: stencils refer to control vertices; False: to\n"
+        "        vertices of the level, for values that are refined already\n"
+        "    dtype: type of the weights, float32 or float64; evaluators take float32\n\n"
         "Raises StatusError.")
         .def(py::init(&createLimitTable), py::arg("refiner"), py::arg("level") = -1, py::kw_only(),
              py::arg("generate_vertices") = true, py::arg("generate_further_sides") = false,
              py::arg("generate_face_centers") = false, py::arg("generate_1st_derivatives") = true,
              py::arg("factorize_intermediate_levels") = true, py::arg("dtype") = "float32")
         .def_readonly("has_derivatives", &LimitStencilTable::hasDerivatives,
-                      "Whether there are weights of both first derivatives.")
+                      "Whether the table has du_weights and dv_weights.")
         .def_property_readonly(
             "du_weights", [](py::object const &self) { return showWeights(self, 1); },
-            "float32 or float64, shape (weights,), a view: of the derivative du.")
+            "float32 or float64, shape (weights,), a view: the weights of derivative du.")
         .def_property_readonly(
             "dv_weights", [](py::object const &self) { return showWeights(self, 2); },
-            "float32 or float64, shape (weights,), a view: of the derivative dv.")
+            "float32 or float64, shape (weights,), a view: the weights of derivative dv.")
         .def(
             "du_to_scipy", [](py::object const &self) { return toScipy(self, 1); },
-            "du_to_scipy()\n\nA scipy.sparse.csr_matrix of du, as to_scipy().")
+            "du_to_scipy()\n\n"
+            "A scipy.sparse.csr_matrix with du_weights, as to_scipy().")
         .def(
             "dv_to_scipy", [](py::object const &self) { return toScipy(self, 2); },
-            "dv_to_scipy()\n\nA scipy.sparse.csr_matrix of dv, as to_scipy().");
+            "dv_to_scipy()\n\n"
+            "A scipy.sparse.csr_matrix with dv_weights, as to_scipy().");
 }
 
 void bindCompactTable(py::module_ &module) {
     using OsdExt::CompactStencilTable;
-    py::class_<CompactStencilTable>(
-        module, "CompactStencilTable",
-        "CompactStencilTable(table)\n\n"
-        "A StencilTable of float32 in two thirds of the memory, faster to evaluate, with the same\n"
-        "results.")
+    py::class_<CompactStencilTable>(module, "CompactStencilTable",
+                                    "CompactStencilTable(table)\n\n"
+                                    "A float32 StencilTable in two thirds of the memory: faster to "
+                                    "evaluate, with equal results.")
         .def(py::init([](StencilTable const &stencils) {
                  auto const *const table =
                      std::get_if<StencilTable::Pointer<float>>(&stencils.table);
@@ -438,7 +439,7 @@ void bindCompactTable(py::module_ &module) {
         .def_property_readonly("num_stencils", &CompactStencilTable::GetNumStencils,
                                "Rows of the table.")
         .def_property_readonly("num_control_vertices", &CompactStencilTable::GetNumControlVertices,
-                               "Control vertices, or values, that stencils refer to.")
+                               "Number of control vertices, or face-varying values.")
         .def_property_readonly("num_blocks", &CompactStencilTable::GetNumBlocks,
                                "Groups of stencils that are evaluated together.")
         .def_property_readonly("num_bytes", &CompactStencilTable::GetNumBytes,

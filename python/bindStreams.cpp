@@ -579,29 +579,31 @@ private:
 /// @}
 
 void bindViews(py::module_ &module) {
-    py::class_<Camera>(
-        module, "Camera",
-        "Camera(eye, target=(0, 0, 0), up=(0, 1, 0), field_of_view=40.0, width=1280, "
-        "height=720)\n\n"
-        "A pinhole camera, as in glTF and USD.\n\n"
-        "Args:\n"
-        "    eye, target: where it is, and the point in the middle of the picture: x, y and z\n"
-        "    up: a direction that is upright in the picture; for a camera that looks along it,\n"
-        "        -z takes its place, or y where it looks more along z than along y\n"
-        "    field_of_view: degrees, of the height of the picture, between 0 and 180\n"
-        "    width, height: of the picture, in pixels")
+    py::class_<Camera>(module, "Camera",
+                       "Camera(eye, target=(0, 0, 0), up=(0, 1, 0), field_of_view=40.0, "
+                       "width=1280, height=720)\n\n"
+                       "A pinhole camera, as in glTF and USD.\n\n"
+                       "Args:\n"
+                       "    eye: position of the camera, x, y and z\n"
+                       "    target: the point in the middle of the picture\n"
+                       "    up: the direction that is upright in the picture.  A camera that looks "
+                       "along up takes\n"
+                       "        -z instead, or y if it looks more along z than along y\n"
+                       "    field_of_view: vertical angle in degrees, between 0 and 180\n"
+                       "    width, height: size of the picture in pixels")
         .def(py::init(&makeCamera), py::arg("eye"), py::arg("target") = py::make_tuple(0, 0, 0),
              py::arg("up") = py::make_tuple(0, 1, 0), py::arg("field_of_view") = 40.0,
              py::arg("width") = 1280, py::arg("height") = 720)
         .def_property_readonly(
-            "eye", [](Camera const &self) { return showPoint(self.eye); }, "Where it is.")
+            "eye", [](Camera const &self) { return showPoint(self.eye); },
+            "Position of the camera.")
         .def_property_readonly(
             "target", [](Camera const &self) { return showPoint(self.target); },
             "The point in the middle of the picture.")
         .def_property_readonly(
             "up", [](Camera const &self) { return showPoint(self.up); },
             "The upright direction that was given.")
-        .def_readonly("field_of_view", &Camera::fieldOfView, "Degrees, of the height.")
+        .def_readonly("field_of_view", &Camera::fieldOfView, "Vertical angle in degrees.")
         .def_readonly("width", &Camera::width, "Pixels.")
         .def_readonly("height", &Camera::height, "Pixels.")
         .def(py::pickle(
@@ -629,10 +631,10 @@ void bindViews(py::module_ &module) {
                 std::vector<long> const &counts = self.GetCounts().cellsByLevel;
                 return std::accumulate(counts.begin(), counts.end(), 0L);
             },
-            "Cells of all faces, without those that are refined: the polygons of facet size 0.")
+            "Cells that are not refined further: the polygons of facet size 0.")
         .def_property_readonly(
             "cells_by_level", [](Forest const &self) { return self.GetCounts().cellsByLevel; },
-            "How many cells are of level 0, 1, 2 ...")
+            "The number of cells of level 0, 1, 2 ...")
         .def_property_readonly(
             "num_outside", [](Forest const &self) { return self.GetCounts().outside; },
             "Cells left coarse because they are outside of the picture.")
@@ -649,18 +651,17 @@ void bindViews(py::module_ &module) {
              py::arg("face"), py::arg("facet_size") = 3)
         .def("boundary_points", &Forest::GetBoundaryPoints,
              "boundary_points(face)\n\n"
-             "int32: the numbers of the points on the boundary of a face among the\n"
-             "num_boundary_points, in the order of its tessellation's coords.  Faces that share a "
-             "point\n"
-             "have the same number for it.",
+             "int32: for each point on the boundary of a face, in the order of its tessellation's\n"
+             "coords, the index among the num_boundary_points.  Faces that share a point have the\n"
+             "same index for it.",
              py::arg("face"));
 
     py::class_<Bounds>(
         module, "ViewBounds",
         "ViewBounds(factory, max_memory=268435456)\n\n"
-        "Keeps how flat the cells of a mesh are, for the next views of the mesh: pass it to\n"
-        "View.make_forest() in place of the factory.  Forests are the same, and take less time.\n"
-        "max_memory bounds its memory, in bytes.  Threads that share it wait for each other.")
+        "Caches the flatness of a mesh's cells for further views of the mesh: pass it to\n"
+        "View.make_forest() in place of the factory.  Forests are equal, and take less time.\n"
+        "max_memory bounds the cache, in bytes.  Threads that share it wait for each other.")
         .def(py::init<std::shared_ptr<FaceSurfaceFactory>, std::size_t>(),
              py::arg("factory").none(false), py::arg("max_memory") = std::size_t(1) << 28)
         .def_property_readonly(
@@ -669,7 +670,7 @@ void bindViews(py::module_ &module) {
                 py::gil_scoped_release const release;
                 return self.Use([](BfrExt::ViewBounds &bounds) { return bounds.GetMemory(); });
             },
-            "Bytes that cells take.")
+            "Bytes in the cache.")
         .def(
             "clear",
             [](Bounds &self) {
@@ -686,15 +687,14 @@ void bindViews(py::module_ &module) {
         "Refines a mesh only as far as a camera sees.\n\n"
         "Args:\n"
         "    camera: a Camera\n"
-        "    flatness: pixels that facets may be from the surface; 0: any number.  Estimated\n"
-        "    edge_length: pixels that sides of cells may be long; 0: any number\n"
-        "    max_level: the last level that is made, 0 ... 12\n"
-        "    culling: whether cells outside of the picture, and those that face away, are left "
-        "coarse\n"
-        "    hysteresis: the fraction of both numbers of pixels above which a cell that was "
-        "refined "
-        "in\n"
-        "        the previous forest stays so, 0 ... 1: so nothing flickers\n\n"
+        "    flatness: largest distance between facets and surface, in pixels, estimated; 0: no "
+        "bound\n"
+        "    edge_length: largest length of a cell's side, in pixels; 0: no bound\n"
+        "    max_level: the largest level of cells, 0 ... 12\n"
+        "    culling: leaves cells coarse that are outside the picture or face away\n"
+        "    hysteresis: 0 ... 1: a cell that was refined in the previous forest stays refined "
+        "above\n"
+        "        this fraction of flatness and edge_length, so that pictures do not flicker\n\n"
         "Raises ValueError for numbers out of range, and where eye and target are equal.")
         .def(py::init(&makeView), py::arg("camera").none(false), py::kw_only(),
              py::arg("flatness") = options.GetFlatness(),
@@ -702,7 +702,7 @@ void bindViews(py::module_ &module) {
              py::arg("max_level") = options.GetMaxLevel(), py::arg("culling") = options.IsCulling(),
              py::arg("hysteresis") = options.GetHysteresis())
         .def_property_readonly("camera", &BfrExt::View::GetCamera,
-                               "The Camera, with the up that is used.")
+                               "The Camera, with the up direction that is used.")
         .def_property_readonly(
             "flatness", [](BfrExt::View const &self) { return self.GetOptions().GetFlatness(); },
             "Pixels.")
@@ -711,23 +711,23 @@ void bindViews(py::module_ &module) {
             [](BfrExt::View const &self) { return self.GetOptions().GetEdgeLength(); }, "Pixels.")
         .def_property_readonly(
             "max_level", [](BfrExt::View const &self) { return self.GetOptions().GetMaxLevel(); },
-            "The last level that is made.")
+            "The largest level of cells.")
         .def_property_readonly(
             "culling", [](BfrExt::View const &self) { return self.GetOptions().IsCulling(); },
             "Whether unseen cells are left coarse.")
         .def_property_readonly(
             "hysteresis",
             [](BfrExt::View const &self) { return self.GetOptions().GetHysteresis(); },
-            "The fraction.")
+            "The fraction below which refined cells are merged.")
         .def("make_forest", &takeMesh,
              "make_forest(factory, points, previous=None)\n\n"
              "The CellForest of a mesh.\n\n"
              "Args:\n"
-             "    factory: a SurfaceFactory, or ViewBounds\n"
+             "    factory: a SurfaceFactory, or ViewBounds, which save time from view to view\n"
              "    points: positions of the mesh, shape (points, 3 or more); float32 and float64 "
              "are\n"
              "        read in place\n"
-             "    previous: the CellForest of the last frame, of the same mesh",
+             "    previous: the CellForest of the previous frame, of the same mesh",
              py::arg("factory"), py::arg("points"), py::arg("previous") = py::none())
         .def(py::pickle(
             [](BfrExt::View const &self) {
@@ -748,14 +748,15 @@ void BindStreams(py::module_ &module) {
     bindViews(module);
 
     py::class_<StreamedPatch>(module, "Patch",
-                              "What the sink of a PatchStream gets: the surface of a base face, or "
-                              "of a section of it.\nIts arrays may be kept.")
+                              "A tessellated base face, or a section of one, that a PatchStream "
+                              "passes to its sink.  A sink\n"
+                              "may keep the arrays.")
         .def_readonly("face", &StreamedPatch::face, "The base face.")
         .def_readonly("tessellation", &StreamedPatch::tessellation,
                       "The LevelTessellation: coords of the points, and facets between them.")
         .def_readonly("points", &StreamedPatch::points, "Shape (coords, length).")
-        .def_readonly("du", &StreamedPatch::du, "Derivatives by u, or None.")
-        .def_readonly("dv", &StreamedPatch::dv, "Derivatives by v, or None.")
+        .def_readonly("du", &StreamedPatch::du, "Derivatives by u, or None without derivatives.")
+        .def_readonly("dv", &StreamedPatch::dv, "Derivatives by v, or None without derivatives.")
         .def_readonly("varying", &StreamedPatch::varying, "Varying data, or None.")
         .def_readonly("fvar_values", &StreamedPatch::fvarValues,
                       "Face-varying data, an array for each channel that was given.");
@@ -763,66 +764,65 @@ void BindStreams(py::module_ &module) {
     py::class_<Stream>(
         module, "PatchStream",
         "PatchStream(factory, levels, *, facet_size=3, derivatives=False, max_memory=4194304)\n\n"
-        "Evaluates the limit surfaces of all faces in bounded memory: hands the patch of each face "
-        "to a\n"
-        "function and forgets it, or writes those of a range of faces into arrays.  Two patches "
-        "that\n"
-        "share an edge have the same points there, and a patch has the same bits for any number "
-        "of\n"
-        "threads and any range of faces.\n\n"
+        "Tessellates the limit surfaces of all faces in bounded memory: run() passes the patch of "
+        "each\n"
+        "face to a function, evaluate() writes the patches of a range of faces into arrays.  "
+        "Patches that\n"
+        "share an edge have the same points there.  A patch has the same bits for any number of "
+        "threads\n"
+        "and any range of faces.\n\n"
         "Args:\n"
         "    factory: a SurfaceFactory\n"
         "    levels: 0 ... 12 for all; or a pair of arrays, levels of faces and levels of edges;\n"
         "        or a CellForest of the factory\n"
-        "    facet_size: 3 for triangles, 4 for cells as they are where all are quads, 0 for "
+        "    facet_size: 3: triangles; 4: quads where all cells are quads, else triangles; 0: "
         "polygons\n"
         "    derivatives: whether patches have du and dv\n"
-        "    max_memory: bytes that tessellations take at a time; faces that are too large for it "
-        "come\n"
-        "        as several patches, their sections\n\n"
+        "    max_memory: bytes of the tessellations that exist at a time; a face that needs more "
+        "comes\n"
+        "        as several patches, its sections\n\n"
         "Holes have no patch.  Refining the refiner raises BufferError while a stream runs.")
         .def(py::init<std::shared_ptr<FaceSurfaceFactory>, py::object, int, bool, std::size_t>(),
              py::arg("factory").none(false), py::arg("levels"), py::kw_only(),
              py::arg("facet_size") = 3, py::arg("derivatives") = false,
              py::arg("max_memory") = BfrExt::PatchStream<float>::Options().GetMaxMemory())
         .def_property_readonly("num_faces", &Stream::GetNumFaces, "Faces of the mesh.")
-        .def(
-            "run", &Stream::Run,
-            "run(points, sink, *, varying=None, fvar_values=None, begin_face=0, end_face=None)\n\n"
-            "Calls sink(patch) with the Patch of each face begin_face ... end_face - 1.\n\n"
-            "Args:\n"
-            "    points: those of the mesh, shape (points,) or (points, length): float32 and "
-            "float64\n"
-            "        are read in place, and results have the same type\n"
-            "    sink: a function of a Patch; False ends the stream, None and True go on.  Threads "
-            "of\n"
-            "        the library call it, one at a time, in any order of faces; what it raises "
-            "ends\n"
-            "        the stream and is raised here\n"
-            "    varying: varying data of the mesh, shape (points, length), or None\n"
-            "    fvar_values: a list of arrays, the values of the first channels\n\n"
-            "Returns whether all patches came.  Raises StatusError for a face without a surface "
-            "that is\n"
-            "no hole.",
-            py::arg("points"), py::arg("sink"), py::kw_only(), py::arg("varying") = py::none(),
-            py::arg("fvar_values") = py::none(), py::arg("begin_face") = 0,
-            py::arg("end_face") = py::none())
+        .def("run", &Stream::Run,
+             "run(points, sink, *, varying=None, fvar_values=None, begin_face=0, end_face=None)\n\n"
+             "Calls sink(patch) with the Patch of each face begin_face ... end_face - 1.\n\n"
+             "Args:\n"
+             "    points: positions of the mesh, shape (points,) or (points, length): float32 and\n"
+             "        float64 are read in place, and results have the same type\n"
+             "    sink: a function that takes a Patch.  If it returns False, the stream ends.  "
+             "Threads of\n"
+             "        the library call it, one call at a time, in any order of faces.  An "
+             "exception of\n"
+             "        the sink ends the stream, and run() raises it\n"
+             "    varying: varying data of the mesh, shape (points, length), or None\n"
+             "    fvar_values: a list of arrays, the values of the first channels\n\n"
+             "Returns True, or False if the sink ended the stream.  Raises StatusError for a face "
+             "without a\n"
+             "surface, unless it is a hole.",
+             py::arg("points"), py::arg("sink"), py::kw_only(), py::arg("varying") = py::none(),
+             py::arg("fvar_values") = py::none(), py::arg("begin_face") = 0,
+             py::arg("end_face") = py::none())
         .def(
             "evaluate", &Stream::Evaluate,
             "evaluate(points, *, varying=None, fvar_values=None, begin_face=0, end_face=None)\n\n"
-            "The patches of faces begin_face ... end_face - 1, one behind the other, in the order "
-            "of\n"
-            "faces.  It takes twice the memory of the result: for large meshes evaluate some faces "
-            "at a\n"
-            "time.  Arguments are those of run().\n\n"
+            "The patches of faces begin_face ... end_face - 1 in ascending order, as arrays.  "
+            "Takes twice the\n"
+            "memory of the result: for large meshes evaluate some faces at a time.  Arguments are "
+            "those of\n"
+            "run().\n\n"
             "Returns a dict:\n"
             "    'faces': int32, the face of each patch\n"
             "    'first_points', 'first_facets': int32, where the points and facets of each patch\n"
             "        begin; then their end\n"
             "    'points', 'du', 'dv', 'varying': shape (all points, length), or None\n"
-            "    'fvar_values': a list of such arrays\n"
-            "    'facets': int32, indices of points: shape (facets, facet_size), with -1 behind\n"
-            "        triangles among quads, or, for polygons, of all one behind the other\n"
+            "    'fvar_values': a list with such an array for each channel\n"
+            "    'facets': int32, indices of points: shape (facets, facet_size), triangles among "
+            "quads\n"
+            "        padded with -1; with facet size 0 the corners of all polygons in one array\n"
             "    'facet_sizes': int32, for polygons, or None",
             py::arg("points"), py::kw_only(), py::arg("varying") = py::none(),
             py::arg("fvar_values") = py::none(), py::arg("begin_face") = 0,

@@ -312,17 +312,17 @@ void BindSurfaces(py::module_ &module) {
     py::class_<FaceTessellation>(
         module, "LevelTessellation",
         "LevelTessellation(face_size, levels, facet_size=3)\n\n"
-        "A base face cut into facets.  Two faces fit if they take the same level for their common "
-        "edge.\n\n"
+        "A base face cut into facets.  Two faces are watertight if they have the same level for "
+        "their\n"
+        "common edge.\n\n"
         "Args:\n"
-        "    face_size: vertices of the face\n"
-        "    levels: 0 ... 12: one for all; or one for each edge, edge i from vertex i to the "
-        "next; "
-        "or\n"
-        "        those of the edges, then that of the inside\n"
-        "    facet_size: 3 for triangles; 4 for quads, where all cells are quads, else triangles "
-        "with -1\n"
-        "        behind them; 0 for polygons")
+        "    face_size: number of vertices of the face\n"
+        "    levels: 0 ... 12: one level for all; or one for each edge, where edge i runs from "
+        "vertex i\n"
+        "        to the next; or one for each edge, then one for the inside\n"
+        "    facet_size: 3: triangles; 4: quads where all cells are quads, else triangles padded "
+        "with\n"
+        "        -1; 0: polygons")
         .def(py::init(&makeTessellation), py::arg("face_size"), py::arg("levels"),
              py::arg("facet_size") = 3)
         .def(py::pickle(
@@ -348,48 +348,52 @@ void BindSurfaces(py::module_ &module) {
             "facet_size", [](FaceTessellation const &self) { return self.Get().GetFacetSize(); },
             "3 for triangles, 4 for quads and triangles, 0 for polygons.")
         .def_property_readonly("coords", &FaceTessellation::GetCoords,
-                               "float64 of the shape (places, 2): u and v, those of the boundary "
-                               "first, from vertex 0 on.")
+                               "float64, shape (points, 2): u and v of each point.  The boundary "
+                               "comes first, from vertex 0 on.")
         .def_property_readonly(
             "num_boundary_coords",
             [](FaceTessellation const &self) { return self.Get().GetNumBoundaryCoords(); },
-            "Places on the boundary.")
+            "Number of points on the boundary.")
         .def_property_readonly("facet_sizes", &FaceTessellation::GetFacetSizes,
-                               "int32: corners of each facet.")
+                               "int32: the number of corners of each facet.")
         .def_property_readonly("facets", &FaceTessellation::GetFacets,
-                               "int32: the places that are corners, of the shape (facets, "
-                               "facet_size), or those of all\npolygons one behind the other.");
+                               "int32: indices of points, shape (facets, facet_size); with facet "
+                               "size 0 the corners of\n"
+                               "all polygons in one array.");
 
     py::class_<FaceSurface>(
         module, "Surface",
         "The limit surface of a base face, made by a SurfaceFactory: a function of u and v.\n\n"
-        "Points of the mesh have the shape (points,) or (points, length); float32 and float64 are "
-        "read\n"
-        "in place.  uv has the shape (places, 2), or is a LevelTessellation.  Results are "
+        "Positions of the mesh have the shape (points,) or (points, length); float32 and float64 "
+        "are\n"
+        "read in place.  uv has the shape (n, 2), or is a LevelTessellation.  Results are "
         "float64.\n\n"
-        "Points of a LevelTessellation, and stencils, are exact.  Points at a (u, v) lie on "
-        "bicubic\n"
+        "Points of a LevelTessellation, and stencils, are exact.  Points at (u, v) lie on bicubic\n"
         "patches, some millionths of the mesh's size from the surface.")
         .def_property_readonly("face_size", &FaceSurface::GetFaceSize, "Vertices of the face.")
-        .def_property_readonly("control_points", &FaceSurface::GetControlPoints,
-                               "int32: the points of the mesh that it depends on, those of the "
-                               "face first.")
+        .def_property_readonly(
+            "control_points", &FaceSurface::GetControlPoints,
+            "int32: the points of the mesh that the surface depends on; the face's own come first.")
         .def("evaluate", &FaceSurface::Evaluate,
-             "evaluate(uv, points)\n\nThe points at places, of the shape (places, length).",
+             "evaluate(uv, points)\n\n"
+             "Points of the surface, shape (n, length).",
              py::arg("uv"), py::arg("points"))
         .def("evaluate_with_derivatives", &FaceSurface::EvaluateWithDerivatives,
-             "evaluate_with_derivatives(uv, points)\n\nReturns (points, du, dv), each of the "
-             "shape (places, length).",
+             "evaluate_with_derivatives(uv, points)\n\n"
+             "Returns (points, du, dv), each of the shape (n, length).",
              py::arg("uv"), py::arg("points"))
         .def("evaluate_with_second_derivatives", &FaceSurface::EvaluateWithSecondDerivatives,
-             "evaluate_with_second_derivatives(uv, points)\n\nReturns (points, du, dv, duu, duv, "
-             "dvv), each of the shape (places, length).  Second derivatives\nexist with face mask "
-             "'smooth', but for some places.",
+             "evaluate_with_second_derivatives(uv, points)\n\n"
+             "Returns (points, du, dv, duu, duv, dvv), each of the shape (n, length).  Second "
+             "derivatives\n"
+             "exist with face mask 'smooth', except at single points, such as extraordinary "
+             "vertices.",
              py::arg("uv"), py::arg("points"))
-        .def("evaluate_stencil", &FaceSurface::EvaluateStencil,
-             "evaluate_stencil(uv)\n\nWeights of the control points for places that are no "
-             "LevelTessellation, of the shape\n(places, control points).",
-             py::arg("uv"))
+        .def(
+            "evaluate_stencil", &FaceSurface::EvaluateStencil,
+            "evaluate_stencil(uv)\n\n"
+            "Weights of the control points, shape (n, control points), for uv of the shape (n, 2).",
+            py::arg("uv"))
         .def("bound", &FaceSurface::Bound,
              "bound(points)\n\nReturns (low, high), the box of the control points, in which the "
              "surface lies.",
@@ -399,19 +403,18 @@ void BindSurfaces(py::module_ &module) {
         module, "SurfaceFactory",
         "SurfaceFactory(refiner)\n\n"
         "Makes the limit surfaces of the faces of level 0.  The refiner needs no refinement.\n\n"
-        "Behind a first step the faces, and the points of the mesh, are those of level 1: refine "
-        "to\n"
-        "it with full topology before.  Once the refiner refines again, the factory raises\n"
+        "With a first step the faces and the points of the mesh are those of level 1: refine to "
+        "level 1\n"
+        "with full topology before.  After the refiner was refined again, the factory raises\n"
         "RuntimeError.\n\n"
-        "Raises StatusError where level 1 is missing, and for levels that are not made by "
-        "hexagonal\n"
-        "steps.")
+        "Raises StatusError if level 1 is missing, and for levels that no hexagonal step made.")
         .def(py::init<std::shared_ptr<Refiner>>(), py::arg("refiner").none(false))
-        .def_property_readonly("num_faces", &FaceSurfaceFactory::GetNumFaces,
-                               "Faces that may have surfaces.")
+        .def_property_readonly("num_faces", &FaceSurfaceFactory::GetNumFaces, "Number of faces.")
         .def("has_limit_surface", &hasLimitSurface,
-             "has_limit_surface(face)\n\nFalse for holes, with boundary 'none' for faces at a "
-             "boundary, and for faces that depend on\ntoo many others: vertex_surface() says why.",
+             "has_limit_surface(face)\n\n"
+             "False for holes, for faces at a boundary with vtx_boundary_interpolation 'none', and "
+             "for faces\n"
+             "that depend on too many others.  vertex_surface() raises an error with the cause.",
              py::arg("face"))
         .def("vertex_surface", &makeVertexSurface,
              "vertex_surface(face)\n\nThe Surface of vertex data.  Raises StatusError where the "
@@ -427,35 +430,36 @@ void BindSurfaces(py::module_ &module) {
     py::class_<Places>(
         module, "SurfacePlaces",
         "SurfacePlaces(factory, faces, uv, *, interpolation_mode='vertex', fvar_channel=0)\n\n"
-        "Evaluates points of any faces, in any order, together, frame after frame, on as many "
-        "threads\n"
-        "as set_num_threads or OpenMP say: ray hits, samples, roots of hair.  The factory need not "
-        "live\n"
-        "on.  Points have the bits of Surface.evaluate at (u, v).\n\n"
+        "Evaluates many (face, u, v) together, in any order, in every frame, in parallel: ray "
+        "hits,\n"
+        "samples, roots of hair.  It does not need the factory afterwards.  Points have the bits "
+        "of\n"
+        "Surface.evaluate().\n\n"
         "Args:\n"
         "    factory: a SurfaceFactory\n"
-        "    faces: integers, shape (places,)\n"
-        "    uv: u and v of each place in its face, shape (places, 2); moved to the boundary of\n"
-        "        the face where they are outside\n"
+        "    faces: integers, shape (n,)\n"
+        "    uv: u and v in each face, shape (n, 2); (u, v) outside the face is moved to its "
+        "boundary\n"
         "    interpolation_mode: 'vertex', 'varying' or 'face_varying'\n"
-        "    fvar_channel: with 'face_varying' the channel, whose values are the points\n\n"
+        "    fvar_channel: the channel, with 'face_varying'\n\n"
         "Raises IndexError for a face out of range and ValueError for uv that are not finite, "
         "which\n"
         "name the row, and StatusError for a face without a surface.")
         .def(py::init<FaceSurfaceFactory const &, py::object, py::object, py::object, int>(),
              py::arg("factory").none(false), py::arg("faces"), py::arg("uv"), py::kw_only(),
              py::arg("interpolation_mode") = "vertex", py::arg("fvar_channel") = 0)
-        .def_property_readonly("num_places", &Places::GetNumPlaces, "Places that were given.")
+        .def_property_readonly("num_places", &Places::GetNumPlaces, "Number of (face, u, v).")
         .def("evaluate", &Places::Evaluate,
              "evaluate(points)\n\n"
-             "The points at all places, in the order of these: float64, shape (places, length).\n\n"
+             "A point for each (face, u, v): float64, shape (n, length).\n\n"
              "Args:\n"
-             "    points: those of the mesh, shape (points,) or (points, length); float64 is read\n"
+             "    points: positions of the mesh, shape (points,) or (points, length); float64 is "
+             "read\n"
              "        in place",
              py::arg("points"))
         .def("evaluate_with_derivatives", &Places::EvaluateWithDerivatives,
              "evaluate_with_derivatives(points)\n\n"
-             "Returns (points, du, dv), each of the shape (places, length).",
+             "Returns (points, du, dv), each of the shape (n, length).",
              py::arg("points"));
 }
 

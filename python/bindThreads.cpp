@@ -143,16 +143,18 @@ thread_local Scope *Scope::innermost = nullptr;
 } // namespace
 
 void BindThreads(py::module_ &module) {
-    py::enum_<ExecutorType>(module, "ExecutorType", "Whose threads the library works on.")
+    py::enum_<ExecutorType>(module, "ExecutorType", "The thread pool that the library uses.")
         .value("DEFAULT", ExecutorType::Default, "Those of the library, which all calls share.")
         .value("OMP", ExecutorType::Omp, "Those of OpenMP.")
         .value("TBB", ExecutorType::Tbb, "Those of TBB, with which Blender and Embree work.");
     py::class_<Scope>(
         module, "ExecutorScope",
         "ExecutorScope(executor=None, num_threads=0)\n\n"
-        "A context manager: the calls inside, from the thread that entered it, use this executor\n"
-        "and at most so many threads; None leaves the executor, and 0 the number, as they are.\n"
-        "With an executor 0 is its own number.")
+        "A context manager for the calls inside it, from the thread that entered it.\n\n"
+        "Args:\n"
+        "    executor: an ExecutorType, or its name; None: the executor stays\n"
+        "    num_threads: the largest number of threads; 0: the number stays, or, with an\n"
+        "        executor, is the executor's own")
         .def(py::init<py::object const &, int>(), py::arg("executor") = py::none(),
              py::arg("num_threads") = 0)
         .def(
@@ -171,16 +173,18 @@ void BindThreads(py::module_ &module) {
             "innermost of the thread.",
             py::arg("type"), py::arg("value"), py::arg("traceback"));
     module.def("get_executors", &getExecutors,
-               "get_executors()\n\nA list of those that this module was built with.");
+               "get_executors()\n\n"
+               "The list of ExecutorTypes that this module was built with.");
     module.def("get_executor", &getExecutor,
-               "get_executor()\n\nThe ExecutorType that calls from this thread use; None for one "
-               "that is a host's own.");
+               "get_executor()\n\n"
+               "The ExecutorType that calls from this thread use; None for a host program's own "
+               "executor.");
     module.def(
         "set_executor", [](py::object const &executor) { SetExecutor(takeExecutor(executor)); },
         "set_executor(executor)\n\n"
-        "Sets what all calls use from now on, of all threads: an ExecutorType or its name.\n"
-        "Results do not depend on it.  Raises ValueError for one that the module was built\n"
-        "without.",
+        "Sets the executor of all threads' calls: an ExecutorType or its name.  Results do not "
+        "depend on\n"
+        "the executor.  Raises ValueError if the module was built without it.",
         py::arg("executor"));
     module.def(
         "set_num_threads",
@@ -189,11 +193,13 @@ void BindThreads(py::module_ &module) {
             SetNumThreads(numThreads);
         },
         "set_num_threads(num_threads)\n\n"
-        "Sets how many threads the calls of the calling thread use from now on; 0: as many as\n"
-        "the executor says.  Results do not depend on it.  Raises ValueError for less.",
+        "Sets the largest number of threads for calls from the calling thread; 0: the executor's "
+        "number.\n"
+        "Results do not depend on it.  Raises ValueError if it is negative.",
         py::arg("num_threads"));
     module.def("get_num_threads", &GetNumThreads,
-               "get_num_threads()\n\nHow many threads a call from this thread uses at most.");
+               "get_num_threads()\n\n"
+               "The largest number of threads that a call from this thread uses.");
 }
 
 } // namespace OpenSubdivHex::Python

@@ -20,7 +20,7 @@ namespace {
 using namespace FarExt;
 
 void bindEnums(py::module_ &module) {
-    py::enum_<FaceMask>(module, "FaceMask", "The mask that makes a face's new points.")
+    py::enum_<FaceMask>(module, "FaceMask", "The mask that makes the new vertices of a face.")
         .value("AVERAGE", FaceMask::Average, "The paper's, and the default.")
         .value("COSINE", FaceMask::Cosine, "Doo and Sabin's of 1978: bounded curvature.")
         .value("SMOOTH", FaceMask::Smooth, "This project's, the smoothest: for renderers.");
@@ -28,11 +28,13 @@ void bindEnums(py::module_ &module) {
         .value("HEXAGONAL", SchemeType::Hexagonal)
         .value("DOO_SABIN", SchemeType::DooSabin)
         .value("TRI_HEX", SchemeType::TriHex);
-    py::enum_<FirstStep>(module, "FirstStep", "A step of another kind that makes level 1.")
+    py::enum_<FirstStep>(
+        module, "FirstStep",
+        "The kind of the step that makes level 1, where it differs from the others.")
         .value("NONE", FirstStep::Same)
         .value("TRI_HEX", FirstStep::TriHex, "A step of the tri-hex scheme.")
         .value("TRUNCATE", FirstStep::Truncate, "Corners are cut off: for meshes of triangles.");
-    py::enum_<StencilMode>(module, "StencilMode", "What stencils interpolate.")
+    py::enum_<StencilMode>(module, "StencilMode", "The kind of data that stencils interpolate.")
         .value("VERTEX", INTERPOLATE_VERTEX)
         .value("VARYING", INTERPOLATE_VARYING)
         .value("FACE_VARYING", INTERPOLATE_FACE_VARYING);
@@ -72,7 +74,7 @@ void bindEnums(py::module_ &module) {
         .value("NONE", OsdExt::CreaseCuts::NoCreases)
         .value("INFINITELY_SHARP", OsdExt::CreaseCuts::InfinitelySharp)
         .value("ALL", OsdExt::CreaseCuts::All);
-    py::enum_<OsdExt::SimdLevel>(module, "SimdLevel", "The instructions that evaluators use.")
+    py::enum_<OsdExt::SimdLevel>(module, "SimdLevel", "The SIMD instructions that evaluators use.")
         .value("PORTABLE", OsdExt::SimdLevel::Portable)
         .value("AVX2", OsdExt::SimdLevel::Avx2)
         .value("AVX512", OsdExt::SimdLevel::Avx512);
@@ -83,9 +85,11 @@ void bindEnums(py::module_ &module) {
 void BindOptions(py::module_ &module) {
     bindEnums(module);
     module.def("get_max_simd_level", &OsdExt::GetMaxSimdLevel,
-               "get_max_simd_level()\n\nThe highest level that this build and this machine have.");
+               "get_max_simd_level()\n\n"
+               "The highest SimdLevel of this build on this machine.");
     module.def("get_simd_level", &OsdExt::GetSimdLevel,
-               "get_simd_level()\n\nThe level that CpuEvaluator and ParallelEvaluator use.");
+               "get_simd_level()\n\n"
+               "The SimdLevel that evaluators use.");
     module.def(
         "set_simd_level",
         [](py::object const &level) {
@@ -96,8 +100,7 @@ void BindOptions(py::module_ &module) {
             }
         },
         "set_simd_level(level)\n\n"
-        "Sets the level for the whole process.  Raises ValueError for one above\n"
-        "get_max_simd_level().",
+        "Sets the SimdLevel of the whole process.  Raises ValueError above get_max_simd_level().",
         py::arg("level"));
 }
 

@@ -22,6 +22,7 @@ What the library refuses raises StatusError.  The interpreter's lock is released
 """
 
 try:
+    from . import _opensubdivhex
     from ._opensubdivhex import *
     from ._opensubdivhex import __version__
 except ImportError as error:
@@ -35,6 +36,14 @@ except ImportError as error:
             "configure with -D Python_EXECUTABLE=... to build it for this one"
         ) from error
     raise
+
+
+# So help() lists them, under the names by which programs know them.
+__all__ = [name for name in dir(_opensubdivhex) if not name.startswith("_")]
+for _value in map(globals().get, __all__):
+    if isinstance(_value, type):
+        _value.__module__ = __name__
+del _value
 
 
 def _show(cls, *names):

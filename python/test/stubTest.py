@@ -5,6 +5,7 @@ import ast
 import builtins
 import inspect
 import pathlib
+import pydoc
 import re
 
 import opensubdivhex as osh
@@ -101,7 +102,7 @@ def test_stubs_have_the_docstrings_of_the_module():
     functions = {node.name: ast.get_docstring(node) for node in surface.body
                  if isinstance(node, ast.FunctionDef)}
     assert functions["face_size"] == "Vertices of the face."
-    assert functions["evaluate"] == "The points at places, of the shape (places, length)."
+    assert functions["evaluate"] == "Points of the surface, shape (n, length)."
 
 
 def test_names_of_options_are_those_that_are_taken():
@@ -144,3 +145,10 @@ def test_objects_say_what_they_are():
         "<LevelTessellation face_size=4, levels=[1, 1, 1, 1, 1]>"
     refiner.refine_uniform(1)
     assert "take it again" in repr(level)
+
+
+def test_help_lists_everything():
+    text = pydoc.plain(pydoc.render_doc(osh))
+    for name in osh.__all__:
+        listed = f"class {name}(" if isinstance(getattr(osh, name), type) else name
+        assert listed in text, name

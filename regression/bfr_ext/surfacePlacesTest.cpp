@@ -481,6 +481,13 @@ TEST(SurfacePlaces, OfManyFacesAreThoseOfEach) {
     EXPECT_EQ(status.GetCode(), FarExt::StatusCode::InvalidArgument);
     EXPECT_FALSE(Places::Create(*other, -1, nullptr, nullptr, &status));
     EXPECT_EQ(status.GetCode(), FarExt::StatusCode::InvalidArgument);
+    float const v = uvs[2 * 5 + 1];
+    uvs[2 * 5 + 1] = std::numeric_limits<float>::infinity();
+    EXPECT_FALSE(Places::Create(*other, kNumPlaces, faces.data(), uvs.data(), &status));
+    EXPECT_EQ(status.GetComponentIndex(), faces[5]);
+    EXPECT_EQ(status.GetErrorMessage(),
+              "u and v of place 5 are not finite, in face " + std::to_string(faces[5]));
+    uvs[2 * 5 + 1] = v;
     faces[7] = shape.GetNumFaces();
     EXPECT_FALSE(Places::Create(*other, kNumPlaces, faces.data(), uvs.data(), &status));
     EXPECT_EQ(status.GetComponentIndex(), shape.GetNumFaces());

@@ -73,8 +73,9 @@ void addSurfaceOptions(CLI::App &app, Arguments *arguments) {
     app.add_option(
            "--like", arguments->like,
            "Defaults of the options below: those of the paper, or what renderers want, "
-           "which is --mask smooth, --boundary edge-and-corner and, where nine of ten faces "
-           "are triangles, --first-step truncate. hexview and the Blender add-on are for "
+           "which is --mask smooth, --boundary edge-and-corner, --fvar-interpolation boundaries "
+           "and, where nine of ten faces are triangles, --first-step truncate. hexview and the "
+           "Blender add-on are for "
            "pictures and begin with smooth; this program and the libraries in C++ and "
            "Python begin with the paper")
         ->check(CLI::IsMember({kLikePaper, kLikeRenderer}))
@@ -103,9 +104,9 @@ void addSurfaceOptions(CLI::App &app, Arguments *arguments) {
         ->type_name("DEG");
     app.add_option("--fvar-interpolation", arguments->fvarInterpolation,
                    "Where texture coordinates and normals are interpolated linearly, before what "
-                   "the file says; all is everywhere")
+                   "the file says; all is everywhere, so that textures slide a little on faces")
         ->check(CLI::IsMember(kFVarInterpolationNames))
-        ->default_str("the file's, or all");
+        ->default_str("the file's, or all, or that of --like");
     app.add_option("--scheme", arguments->scheme,
                    "Subdivision scheme; hex is short for hexagonal. The others drop border faces "
                    "and take neither creases, corners, texture coordinates nor normals")

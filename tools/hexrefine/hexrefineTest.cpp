@@ -50,23 +50,26 @@ TEST_F(Hexrefine, IsLikeRenderers) {
     auto const getRules = [&](std::string const &arguments) {
         Json const json = Json::parse(run(arguments + " --quiet --stats -").out);
         return json["mask"].get<std::string>() + " " + json["boundary"].get<std::string>() + " " +
-               json["firstStep"].get<std::string>();
+               json["firstStep"].get<std::string>() + " " +
+               json["fvarInterpolation"].get<std::string>();
     };
-    EXPECT_EQ(getRules(cube), "average none none");
-    EXPECT_EQ(getRules(cube + " --like paper"), "average none none");
-    EXPECT_EQ(getRules(cube + " --like renderer"), "smooth edge-and-corner none");
+    EXPECT_EQ(getRules(cube), "average none none all");
+    EXPECT_EQ(getRules(cube + " --like paper"), "average none none all");
+    EXPECT_EQ(getRules(cube + " --like renderer"), "smooth edge-and-corner none boundaries");
     std::string const triangles = makeFile("triangles.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\n"
                                                             "f 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n");
-    EXPECT_EQ(getRules(triangles), "average none none");
-    EXPECT_EQ(getRules(triangles + " --like renderer"), "smooth edge-and-corner truncate");
+    EXPECT_EQ(getRules(triangles), "average none none all");
+    EXPECT_EQ(getRules(triangles + " --like renderer"),
+              "smooth edge-and-corner truncate boundaries");
     // What is said, and what the file says, come before it.
     EXPECT_EQ(getRules(triangles + " --like renderer --mask cosine --first-step none --boundary "
-                                   "edge-only"),
-              "cosine edge-only none");
+                                   "edge-only --fvar-interpolation corners-only"),
+              "cosine edge-only none corners-only");
     std::string const tagged =
         makeFile("tagged.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n"
-                               "t interpolateboundary 1/0/0 2\n");
-    EXPECT_EQ(getRules(tagged + " --like renderer"), "smooth edge-only none");
+                               "t interpolateboundary 1/0/0 2\n"
+                               "t facevaryinginterpolateboundary 1/0/0 1\n");
+    EXPECT_EQ(getRules(tagged + " --like renderer"), "smooth edge-only none corners-only");
     expectBadUsage(cube + " --like renderer --scheme doo-sabin",
                    "--like: renderer is not for --scheme doo-sabin");
     expectBadUsage(cube + " --like renderer --coplanar", "--like: renderer is not for --coplanar");

@@ -223,14 +223,15 @@ void Job::requireDone(bool isDone, FarExt::CallStatus const &status) const {
 
 void Job::warn(std::string const &message) const { PrintWarning(kName, _arguments.input, message); }
 
-// The rules: those of the command line, else those of the file, else the boundary of --like and what
-// Sdc::Options has.
+// The rules: those of the command line, else those of the file, else those of --like, else those of Sdc::Options.
 Sdc::Options Job::chooseOptions() const {
     MeshTags const &tags = _mesh.tags;
     Sdc::Options options;
-    auto boundary = tags.boundary.value_or(_arguments.IsLikeRenderer()
-                                               ? Sdc::Options::VTX_BOUNDARY_EDGE_AND_CORNER
-                                               : Sdc::Options::VTX_BOUNDARY_NONE);
+    if (_arguments.IsLikeRenderer()) {
+        options.SetVtxBoundaryInterpolation(Sdc::Options::VTX_BOUNDARY_EDGE_AND_CORNER);
+        options.SetFVarLinearInterpolation(Sdc::Options::FVAR_LINEAR_BOUNDARIES);
+    }
+    auto boundary = tags.boundary.value_or(options.GetVtxBoundaryInterpolation());
     if (_arguments.boundary) {
         boundary = FindRule<decltype(boundary)>(kBoundaryNames, *_arguments.boundary);
     }
