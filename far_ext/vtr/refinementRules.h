@@ -185,6 +185,7 @@ private:
     }
     void makeCirculantRules();
     void endFaceRuns();
+    void setLineWeights(SharpVertex &sharp) const;
     void makeVertexWeights();
     void makeRuledVertices(bool hasIrregular);
 
