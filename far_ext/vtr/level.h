@@ -115,7 +115,7 @@ struct QuadCorner {
 /// Each begins with its corner, and has no padding: behind the corner, equal bytes are equal tags.
 struct CornerTags {
     std::vector<SectorCorner> sectorCorners; ///< of a corner by kind
-    // Those with FaceMask::Smooth; empty with other masks.
+    // For FaceMask::Smooth; empty with other masks, but for quads beside lines where hexagonal steps begin.
     std::vector<IrregularCorner> irregularCorners; ///< one for a corner at most
     std::vector<QuadCorner> quadCorners;           ///< one for a corner at most
 

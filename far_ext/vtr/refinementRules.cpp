@@ -181,8 +181,11 @@ void RefinementRules::makeRuledVertices(bool hasIrregular) {
             }
         }
     };
-    for (SharpVertex const &sharp : _level.sharpVerts) {
+    for (SharpVertex sharp : _level.sharpVerts) {
         addIrregularBefore(sharp.vert);
+        if (hasIrregular) {
+            setLineWeights(sharp);
+        }
         VertexRule rule = {sharp.faceWeight, 0, {}, {}, nullptr};
         auto const add = [&rule](Index source, double weight) {
             rule.sources[rule.numSources] = source;
@@ -202,21 +205,59 @@ void RefinementRules::makeRuledVertices(bool hasIrregular) {
     addIrregularBefore(_level.numVertices);
 }
 
+// Between first rows of quads, neighbors along the line have other weights.
+void RefinementRules::setLineWeights(SharpVertex &sharp) const {
+    if (_level.quadCorners.empty() || _faceMask != FaceMask::Smooth || sharp.creaseShare == 0) {
+        return;
+    }
+    double weight = -1;
+    for (Index k = _level.vertFirstFace[sharp.vert]; k < _level.vertFirstFace[sharp.vert + 1];
+         ++k) {
+        Index const corner = _level.GetVertexCorner(k);
+        auto const quads = FindCornerTags(_level.quadCorners, corner, corner + 1);
+        if (quads.empty() || !IsOnQuadLine(quads[0].flags)) {
+            return;
+        }
+        weight = std::max(weight,
+                          FindLineQuadRow(_level.numHexagonalSteps, quads[0].flags).neighborWeight);
+    }
+    if (weight < 0) {
+        return;
+    }
+    // An edge of phase A has the larger one.
+    double const largest = std::max(sharp.neighborWeights[0], sharp.neighborWeights[1]);
+    for (double &neighborWeight : sharp.neighborWeights) {
+        double const changed = sharp.creaseShare * weight * (neighborWeight / largest);
+        sharp.vertexWeight += neighborWeight - changed;
+        neighborWeight = changed;
+    }
+}
+
 // Where the paths of all corners of a vertex tell its weights, these have the share that its sharpness leaves.
 void RefinementRules::makeVertexWeights() {
-    if (_level.quadCorners.empty() || _level.numVertices == 0) {
+    if (_level.quadCorners.empty() || _level.numVertices == 0 || _faceMask != FaceMask::Smooth) {
         return;
     }
     struct OfCorner {
-        float weight = -1; // with so few digits it is exact
+        double weight = -1;
         float share = 0;
     };
-    auto const find = [this](QuadCorner const &quad) -> OfCorner {
+    // Before the first step the other faces around a vertex of the first row beside a line have the weight of all.
+    bool const isBase = _level.numHexagonalSteps == 0;
+    OfCorner const ofOthers =
+        isBase ? OfCorner{GetPlainVertexMask(kQuad).faceWeight, 1} : OfCorner();
+    auto const find = [&](QuadCorner const &quad) -> OfCorner {
         QuadRow const row = FindQuadRow(_level.numHexagonalSteps, quad.flags);
-        return {float(row.vertexWeight), quad.flags.GetShare()};
+        QuadRow const ofLine = FindLineQuadRow(_level.numHexagonalSteps, quad.flags);
+        if (ofLine.vertexWeight < 0 || ofLine.share == 0) {
+            return {row.vertexWeight, row.share};
+        }
+        double const share = double(ofLine.share);
+        double const rest = isBase ? ofOthers.weight : row.vertexWeight;
+        return {share * ofLine.vertexWeight + (1 - share) * rest, 1};
     };
-    // In the constant levels few vertices have such weights.
-    bool const areFew = _level.numHexagonalSteps >= kNumStepsToConstantMasks;
+    // In the constant levels and before the first step few vertices have such weights.
+    bool const areFew = isBase || _level.numHexagonalSteps >= kNumStepsToConstantMasks;
     std::vector<Index> few;
     Buffer<OfCorner> ofCorners;
     if (areFew) {
@@ -240,7 +281,7 @@ void RefinementRules::makeVertexWeights() {
             return ofCorners[std::size_t(corner)];
         }
         auto const quads = FindCornerTags(_level.quadCorners, corner, corner + 1);
-        return quads.empty() ? OfCorner() : find(quads[0]);
+        return quads.empty() ? ofOthers : find(quads[0]);
     };
     std::map<std::vector<double>, int> positions;
     std::vector<double> weights;
@@ -257,7 +298,7 @@ void RefinementRules::makeVertexWeights() {
             if (share == 0) {
                 break;
             }
-            weights.push_back(double(ofCorner.weight));
+            weights.push_back(ofCorner.weight);
             weights[0] -= weights.back();
         }
         if (share == 0) {
@@ -359,15 +400,16 @@ private:
     std::vector<Index> findSharpFaces() const;
     void addFace(Index face, int rule);
     void readTags(Index face, FaceTags &tags);
-    QuadRow findQuadRow(QuadCorner const &quad) const {
-        return FindQuadRow(_level.numHexagonalSteps, quad.flags);
-    }
+    // What paths tell of a corner in a face, or half a hexagon, of some size; null where nothing.
+    QuadRow findLineQuadRow(QuadCorner const *quad) const;
+    QuadRow findQuadRow(QuadCorner const *quad, int size) const;
     bool hasOwnRows(FaceTags const &tags) const;
     Index findNextFace(FaceTags const &read) const;
     void addRule(FaceTags const &tags);
     void addRow(std::vector<double> const &row);
     static void addMask(double const (&mask)[kHexagon], int corner, bool isBackwards, double share,
                         std::vector<double> &row);
+    static void addLineMask(QuadRow const &ofLine, int corner, std::vector<double> &row);
     void addIrregularWeights(IrregularCorner const &irregular, int corner,
                              std::vector<double> &row);
     // The entries of one corner.
@@ -462,15 +504,27 @@ void RefinementRules::DenseRuleMaker::addRow(std::vector<double> const &row) {
     _rules._weights.insert(_rules._weights.end(), row.begin(), row.end());
 }
 
+QuadRow RefinementRules::DenseRuleMaker::findQuadRow(QuadCorner const *quad, int size) const {
+    return size == kHexagon && quad && _faceMask == FaceMask::Smooth
+               ? FindQuadRow(_level.numHexagonalSteps, quad->flags)
+               : QuadRow();
+}
+
+QuadRow RefinementRules::DenseRuleMaker::findLineQuadRow(QuadCorner const *quad) const {
+    return quad && _faceMask == FaceMask::Smooth
+               ? FindLineQuadRow(_level.numHexagonalSteps, quad->flags)
+               : QuadRow();
+}
+
 // Whether any corner does not follow the circulant mask: flags alone are no reason.
 bool RefinementRules::DenseRuleMaker::hasOwnRows(FaceTags const &tags) const {
     return tags.isHalf || tags.diagonal > 0 || !tags.sectorCorners.empty() ||
            !tags.irregularCorners.empty() ||
-           (tags.size == kHexagon && std::any_of(tags.quadCorners.begin(), tags.quadCorners.end(),
-                                                 [this](QuadCorner const &quad) {
-                                                     return quad.flags.GetShare() > 0 &&
-                                                            findQuadRow(quad).mask != nullptr;
-                                                 }));
+           std::any_of(tags.quadCorners.begin(), tags.quadCorners.end(),
+                       [&](QuadCorner const &quad) {
+                           return findQuadRow(&quad, tags.size).HasMask() ||
+                                  findLineQuadRow(&quad).HasMask();
+                       });
 }
 
 // Corners of a face with nothing of their own have the rows of its circulant rule.
@@ -499,12 +553,13 @@ void RefinementRules::DenseRuleMaker::addRule(FaceTags const &tags) {
                                                                                     : nullptr;
         QuadCorner const *const ofQuad =
             quad != tags.quadCorners.end() && quad->corner == corner ? quad++ : nullptr;
-        QuadRow const byPath =
-            ofQuad && size == kHexagon ? findQuadRow(*ofQuad) : QuadRow{nullptr, false, -1, -1};
-        float const ofPath = byPath.mask ? ofQuad->flags.GetShare() : 0;
+        QuadRow const ofLine = findLineQuadRow(ofQuad);
+        QuadRow const byPath = findQuadRow(ofQuad, size);
+        double const ofPath = !byPath.HasMask() ? 0 : ofLine.HasMask() ? 1 : double(byPath.share);
         std::size_t const circulantRow =
             _rules._circulants[std::size_t(size)] + std::size_t(size - i);
-        if (sharp == 0 && towards == 0 && !hasOneFace && !ofIrregular && ofPath == 0) {
+        if (sharp == 0 && towards == 0 && !hasOneFace && !ofIrregular && ofPath == 0 &&
+            !ofLine.HasMask()) {
             _rules._rows.push_back(circulantRow);
             continue;
         }
@@ -534,6 +589,9 @@ void RefinementRules::DenseRuleMaker::addRule(FaceTags const &tags) {
         }
         if (ofPath > 0) {
             addMask(*byPath.mask, i, byPath.isBackwards, ofPath, row);
+        }
+        if (ofLine.HasMask()) {
+            addLineMask(ofLine, i, row);
         }
         addRow(row);
     }
@@ -581,6 +639,28 @@ void RefinementRules::DenseRuleMaker::addMask(double const (&mask)[kHexagon], in
     for (int j = 0; j < kHexagon; ++j) {
         double &weight = row[std::size_t((corner + (isBackwards ? kHexagon - j : j)) % kHexagon)];
         weight += share * (mask[j] - weight);
+    }
+}
+
+// Mixes its share of a line's row into that of a corner, whose weights these are so far.
+void RefinementRules::DenseRuleMaker::addLineMask(QuadRow const &ofLine, int corner,
+                                                  std::vector<double> &row) {
+    double const share = double(ofLine.share);
+    if (ofLine.size == kHexagon) {
+        addMask(*ofLine.mask, corner, ofLine.isBackwards, share, row);
+        return;
+    }
+    // A quad, half a face, or one half of a hexagon.
+    constexpr int kFace[kTrapezoid] = {0, 1, 2, 3};
+    auto const &places =
+        row.size() == kHexagon ? kHexagonHalves[corner < kDiagonalEnd ? 1 : 0] : kFace;
+    int const place = int(std::find(places, places + kTrapezoid, corner) - places);
+    for (double &weight : row) {
+        weight *= 1 - share;
+    }
+    for (int j = 0; j < kTrapezoid; ++j) {
+        int const next = (place + (ofLine.isBackwards ? kTrapezoid - j : j)) % kTrapezoid;
+        row[std::size_t(places[next])] += share * (*ofLine.mask)[j];
     }
 }
 
