@@ -78,11 +78,12 @@ struct FaceTags {
     float diagonal; // share of the rule of a sharp diagonal
     TagRange<SectorCorner> sectorCorners;
     TagRange<IrregularCorner> irregularCorners;
-    TagRange<QuadCorner> quadCorners;
+    std::array<QuadFlags, kHexagon> quadFlags; // by corner; none of larger faces have any
 
     bool operator==(FaceTags const &other) const {
-        bool result = isHalf == other.isHalf && size == other.size && diagonal == other.diagonal;
-        CornerTags::ForEachKind(
+        bool result = isHalf == other.isHalf && size == other.size && diagonal == other.diagonal &&
+                      std::memcmp(&quadFlags, &other.quadFlags, sizeof quadFlags) == 0;
+        CornerTags::ForEachListedKind(
             [&](auto const &tags, auto const &otherTags) {
                 auto const isSame = [&](auto const &x, auto const &y) {
                     return getWords(x, firstCorner) == getWords(y, other.firstCorner);
@@ -102,7 +103,7 @@ struct FaceTags {
                 hash = (hash ^ (std::uint64_t(high) << 32 | low)) * kFactor;
             };
             add(getBits(tags.diagonal), 0);
-            CornerTags::ForEachKind(
+            CornerTags::ForEachListedKind(
                 [&](auto const &ofKind) {
                     for (auto const &tag : ofKind) {
                         auto const words = getWords(tag, tags.firstCorner);
@@ -112,6 +113,11 @@ struct FaceTags {
                     }
                 },
                 tags);
+            std::array<std::uint32_t, sizeof tags.quadFlags / sizeof(std::uint32_t)> words;
+            std::memcpy(words.data(), &tags.quadFlags, sizeof words);
+            for (std::size_t i = 0; i < words.size(); i += 2) {
+                add(words[i], words[i + 1]);
+            }
             hash ^= hash >> 32;
             return std::size_t(hash);
         }
@@ -214,12 +220,11 @@ void RefinementRules::setLineWeights(SharpVertex &sharp) const {
     for (Index k = _level.vertFirstFace[sharp.vert]; k < _level.vertFirstFace[sharp.vert + 1];
          ++k) {
         Index const corner = _level.GetVertexCorner(k);
-        auto const quads = FindCornerTags(_level.quadCorners, corner, corner + 1);
-        if (quads.empty() || !IsOnQuadLine(quads[0].flags)) {
+        QuadFlags const flags = _level.quadCorners.GetFlags(corner);
+        if (!IsOnQuadLine(flags)) {
             return;
         }
-        weight = std::max(weight,
-                          FindLineQuadRow(_level.numHexagonalSteps, quads[0].flags).neighborWeight);
+        weight = std::max(weight, FindLineQuadRow(_level.numHexagonalSteps, flags).neighborWeight);
     }
     if (weight < 0) {
         return;
@@ -246,9 +251,9 @@ void RefinementRules::makeVertexWeights() {
     bool const isBase = _level.numHexagonalSteps == 0;
     OfCorner const ofOthers =
         isBase ? OfCorner{GetPlainVertexMask(kQuad).faceWeight, 1} : OfCorner();
-    auto const find = [&](QuadCorner const &quad) -> OfCorner {
-        QuadRow const row = FindQuadRow(_level.numHexagonalSteps, quad.flags);
-        QuadRow const ofLine = FindLineQuadRow(_level.numHexagonalSteps, quad.flags);
+    auto const find = [&](QuadFlags flags) -> OfCorner {
+        QuadRow const row = FindQuadRow(_level.numHexagonalSteps, flags);
+        QuadRow const ofLine = FindLineQuadRow(_level.numHexagonalSteps, flags);
         if (ofLine.vertexWeight < 0 || ofLine.share == 0) {
             return {row.vertexWeight, row.share};
         }
@@ -267,10 +272,9 @@ void RefinementRules::makeVertexWeights() {
         SortUnique(few);
     } else {
         ofCorners.Resize(std::size_t(_level.numCorners));
-        std::fill_n(ofCorners.data(), ofCorners.size(), OfCorner());
-        ParallelFor(Index(_level.quadCorners.size()), [&](Index i) {
-            QuadCorner const &quad = _level.quadCorners[std::size_t(i)];
-            ofCorners[std::size_t(quad.corner)] = find(quad);
+        ParallelFor(_level.numCorners, [&](Index corner) {
+            QuadFlags const flags = _level.quadCorners.GetFlags(corner);
+            ofCorners[std::size_t(corner)] = flags.HasAny() ? find(flags) : OfCorner();
         });
     }
     VertexVertexMask const plain = GetPlainVertexMask(kFVertexFaces);
@@ -280,8 +284,8 @@ void RefinementRules::makeVertexWeights() {
         if (!areFew) {
             return ofCorners[std::size_t(corner)];
         }
-        auto const quads = FindCornerTags(_level.quadCorners, corner, corner + 1);
-        return quads.empty() ? ofOthers : find(quads[0]);
+        QuadFlags const flags = _level.quadCorners.GetFlags(corner);
+        return flags.HasAny() ? find(flags) : ofOthers;
     };
     std::map<std::vector<double>, int> positions;
     std::vector<double> weights;
@@ -363,7 +367,7 @@ public:
         std::unordered_map<FaceTags, int, FaceTags::Hash> ruleOfTags;
         FaceTags before = {}; // of the last face: those that follow one another are mostly alike
         FaceTags tags = {};
-        CornerTags::ForEachKind(
+        CornerTags::ForEachListedKind(
             [](auto const &all, auto &read) {
                 read = {all.data(), all.data()};
             },
@@ -400,11 +404,11 @@ private:
     std::vector<Index> findSharpFaces() const;
     void addFace(Index face, int rule);
     void readTags(Index face, FaceTags &tags);
-    // What paths tell of a corner in a face, or half a hexagon, of some size; null where nothing.
-    QuadRow findLineQuadRow(QuadCorner const *quad) const;
-    QuadRow findQuadRow(QuadCorner const *quad, int size) const;
+    // What paths tell of a corner in a face, or half a hexagon, of some size.
+    QuadRow findLineQuadRow(QuadFlags flags) const;
+    QuadRow findQuadRow(QuadFlags flags, int size) const;
     bool hasOwnRows(FaceTags const &tags) const;
-    Index findNextFace(FaceTags const &read) const;
+    Index findNextFace(FaceTags const &read);
     void addRule(FaceTags const &tags);
     void addRow(std::vector<double> const &row);
     static void addMask(double const (&mask)[kHexagon], int corner, bool isBackwards, double share,
@@ -431,8 +435,9 @@ private:
     IrregularMasks _masks;
     QuadMask _quadMask;
     double _halfFaceWeights[kTrapezoid][kTrapezoid];
-    Index _endDense = 0; // behind the last face with a dense rule
-    Index _endRead = 0;  // behind the last face whose tags were read
+    Index _endDense = 0;  // behind the last face with a dense rule
+    Index _endRead = 0;   // behind the last face whose tags were read
+    Index _nextQuad = -1; // the first corner behind that with flags of quads, or the end
 };
 
 // Faces with a feature that is no tag of a corner, ascending.
@@ -472,7 +477,7 @@ void RefinementRules::DenseRuleMaker::readTags(Index face, FaceTags &tags) {
     if (!_isVertex) {
         return;
     }
-    CornerTags::ForEachKind(
+    CornerTags::ForEachListedKind(
         [end = tags.firstCorner + tags.size](auto const &all, auto &read) {
             read.first = read.behind;
             while (read.behind != all.data() + all.size() && read.behind->corner < end) {
@@ -480,12 +485,20 @@ void RefinementRules::DenseRuleMaker::readTags(Index face, FaceTags &tags) {
             }
         },
         _level, tags);
+    for (int i = 0; i < kHexagon; ++i) {
+        tags.quadFlags[std::size_t(i)] =
+            i < tags.size ? _level.quadCorners.GetFlags(tags.firstCorner + i) : QuadFlags();
+    }
 }
 
 // The first face with tags of corners behind those that have been read, mostly the next one; else the end.
-Index RefinementRules::DenseRuleMaker::findNextFace(FaceTags const &read) const {
-    Index corner = _level.numCorners;
-    CornerTags::ForEachKind(
+Index RefinementRules::DenseRuleMaker::findNextFace(FaceTags const &read) {
+    Index const endRead = _level.faceFirstCorner[_endRead];
+    if (_nextQuad < endRead) {
+        _nextQuad = QuadCorners::Iterator(_level.quadCorners, endRead, _level.numCorners)->corner;
+    }
+    Index corner = _nextQuad;
+    CornerTags::ForEachListedKind(
         [&corner](auto const &all, auto const &ofKind) {
             if (ofKind.behind != all.data() + all.size()) {
                 corner = std::min(corner, ofKind.behind->corner);
@@ -504,27 +517,24 @@ void RefinementRules::DenseRuleMaker::addRow(std::vector<double> const &row) {
     _rules._weights.insert(_rules._weights.end(), row.begin(), row.end());
 }
 
-QuadRow RefinementRules::DenseRuleMaker::findQuadRow(QuadCorner const *quad, int size) const {
-    return size == kHexagon && quad && _faceMask == FaceMask::Smooth
-               ? FindQuadRow(_level.numHexagonalSteps, quad->flags)
+QuadRow RefinementRules::DenseRuleMaker::findQuadRow(QuadFlags flags, int size) const {
+    return size == kHexagon && _faceMask == FaceMask::Smooth
+               ? FindQuadRow(_level.numHexagonalSteps, flags)
                : QuadRow();
 }
 
-QuadRow RefinementRules::DenseRuleMaker::findLineQuadRow(QuadCorner const *quad) const {
-    return quad && _faceMask == FaceMask::Smooth
-               ? FindLineQuadRow(_level.numHexagonalSteps, quad->flags)
-               : QuadRow();
+QuadRow RefinementRules::DenseRuleMaker::findLineQuadRow(QuadFlags flags) const {
+    return _faceMask == FaceMask::Smooth ? FindLineQuadRow(_level.numHexagonalSteps, flags)
+                                         : QuadRow();
 }
 
 // Whether any corner does not follow the circulant mask: flags alone are no reason.
 bool RefinementRules::DenseRuleMaker::hasOwnRows(FaceTags const &tags) const {
     return tags.isHalf || tags.diagonal > 0 || !tags.sectorCorners.empty() ||
            !tags.irregularCorners.empty() ||
-           std::any_of(tags.quadCorners.begin(), tags.quadCorners.end(),
-                       [&](QuadCorner const &quad) {
-                           return findQuadRow(&quad, tags.size).HasMask() ||
-                                  findLineQuadRow(&quad).HasMask();
-                       });
+           std::any_of(tags.quadFlags.begin(), tags.quadFlags.end(), [&](QuadFlags flags) {
+               return findQuadRow(flags, tags.size).HasMask() || findLineQuadRow(flags).HasMask();
+           });
 }
 
 // Corners of a face with nothing of their own have the rows of its circulant rule.
@@ -535,7 +545,6 @@ void RefinementRules::DenseRuleMaker::addRule(FaceTags const &tags) {
     double const sharp = tags.isHalf ? 1 : tags.diagonal;
     SectorCorner const *sector = tags.sectorCorners.begin();
     IrregularCorner const *irregular = tags.irregularCorners.begin();
-    QuadCorner const *quad = tags.quadCorners.begin();
     for (int i = 0; i < size; ++i) {
         Index const corner = tags.firstCorner + i;
         double towards = 0;
@@ -551,10 +560,9 @@ void RefinementRules::DenseRuleMaker::addRule(FaceTags const &tags) {
         IrregularCorner const *const ofIrregular =
             irregular != tags.irregularCorners.end() && irregular->corner == corner ? irregular++
                                                                                     : nullptr;
-        QuadCorner const *const ofQuad =
-            quad != tags.quadCorners.end() && quad->corner == corner ? quad++ : nullptr;
-        QuadRow const ofLine = findLineQuadRow(ofQuad);
-        QuadRow const byPath = findQuadRow(ofQuad, size);
+        QuadFlags const flags = i < kHexagon ? tags.quadFlags[std::size_t(i)] : QuadFlags();
+        QuadRow const ofLine = findLineQuadRow(flags);
+        QuadRow const byPath = findQuadRow(flags, size);
         double const ofPath = !byPath.HasMask() ? 0 : ofLine.HasMask() ? 1 : double(byPath.share);
         std::size_t const circulantRow =
             _rules._circulants[std::size_t(size)] + std::size_t(size - i);
