@@ -42,7 +42,7 @@ void QuadCorners::clear() {
 // A page of no flags; returns its position.
 Index QuadCorners::addPage() {
     if (_flags.empty()) {
-        _flags.resize(kNoFlags + kPage);
+        _flags.resize(std::size_t{kPage}); // at kNoFlags
     }
     auto const position = Index(_flags.size());
     _flags.resize(_flags.size() + kPage);
@@ -72,7 +72,7 @@ void QuadCorners::push_back(QuadCorner const &quad) {
         _pages.resize(page, kNoFlags);
         _pages.push_back(addPage());
     }
-    _flags[std::size_t(_pages.back() + quad.corner % kPage)] = quad.flags;
+    _flags[std::size_t(_pages.back()) + std::size_t(quad.corner % kPage)] = quad.flags;
     ++_numCorners;
 }
 
@@ -87,7 +87,7 @@ void QuadCorners::Assign(Buffer<QuadFlags> const &flags) {
     pages.Resize(std::size_t(GetNumParallelRanges(numCorners, kPage)));
     auto const getSize = [&](Index page) { return std::min(kPage, numCorners - page * kPage); };
     ParallelFor(Index(pages.size()), [&](Index page) {
-        QuadFlags const *const first = flags.data() + page * kPage;
+        QuadFlags const *const first = flags.data() + std::ptrdiff_t(page) * kPage;
         Index const size = getSize(page);
         pages[std::size_t(page)] = {
             hash(first, size),
@@ -100,7 +100,7 @@ void QuadCorners::Assign(Buffer<QuadFlags> const &flags) {
         }
         _numCorners += std::size_t(count);
         _pages.resize(std::size_t(page), kNoFlags);
-        QuadFlags const *const first = flags.data() + page * kPage;
+        QuadFlags const *const first = flags.data() + std::ptrdiff_t(page) * kPage;
         Index const size = getSize(page);
         auto const found = _pageOfHash.find(hashOfPage);
         if (size == kPage && found != _pageOfHash.end() && areEqual(found->second, first)) {
