@@ -80,9 +80,15 @@ struct FaceTags {
     TagRange<IrregularCorner> irregularCorners;
     std::array<QuadFlags, kHexagon> quadFlags; // by corner; none of larger faces have any
 
+    auto GetQuadWords() const {
+        std::array<std::uint32_t, sizeof quadFlags / sizeof(std::uint32_t)> words;
+        std::memcpy(words.data(), quadFlags.data(), sizeof words);
+        return words;
+    }
+
     bool operator==(FaceTags const &other) const {
         bool result = isHalf == other.isHalf && size == other.size && diagonal == other.diagonal &&
-                      std::memcmp(&quadFlags, &other.quadFlags, sizeof quadFlags) == 0;
+                      GetQuadWords() == other.GetQuadWords();
         CornerTags::ForEachListedKind(
             [&](auto const &tags, auto const &otherTags) {
                 auto const isSame = [&](auto const &x, auto const &y) {
@@ -113,8 +119,7 @@ struct FaceTags {
                     }
                 },
                 tags);
-            std::array<std::uint32_t, sizeof tags.quadFlags / sizeof(std::uint32_t)> words;
-            std::memcpy(words.data(), &tags.quadFlags, sizeof words);
+            auto const words = tags.GetQuadWords();
             for (std::size_t i = 0; i < words.size(); i += 2) {
                 add(words[i], words[i + 1]);
             }
