@@ -126,8 +126,8 @@ public:
     void SetCells(RefinedCells &cells) const {
         useType([&](auto const &type) { cells.SetBase(type, _points.data(), 3); });
     }
-    void Sample(CellGrid &grid, RefinedCells &cells, std::vector<double> &samples) const {
-        useType([&](auto const &type) { grid.Sample(type, _points.data(), cells, samples); });
+    void Sample(CellGrid &grid, std::vector<double> &samples) const {
+        useType([&](auto const &type) { grid.Sample(type, _points.data(), samples); });
     }
     bool IsSharp() const { return _type.IsSharp(); }
     /// Whether the hull of its points is outside of the picture, which contains the surface.
@@ -289,10 +289,10 @@ private:
         if (node.parent) {
             std::size_t const cell = makeCell(node);
             _isSharp = _cells[cell].GetType().IsSharp();
-            _grid->Sample(_cells, cell, _samples);
+            _grid->Sample(_cells[cell], _samples);
         } else {
             _isSharp = _getBase().IsSharp();
-            _getBase().Sample(*_grid, _cells, _samples);
+            _getBase().Sample(*_grid, _samples);
         }
     }
 

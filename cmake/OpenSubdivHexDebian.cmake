@@ -71,6 +71,13 @@ macro(opensubdivhex_add_debian_package component name section content)
     COMPONENT ${component} EXCLUDE_FROM_ALL)
 endmacro()
 
+# opensubdivhex_clean_byte_code(COMPONENT NAME): removing the package removes the byte code that Python has made of it.
+macro(opensubdivhex_clean_byte_code component name)
+  string(TOUPPER ${component} upper)
+  file(WRITE ${debianDir}/${name}/prerm "#!/bin/sh\nset -e\npy3clean -p ${name}\n")
+  set(CPACK_DEBIAN_${upper}_PACKAGE_CONTROL_EXTRA ${debianDir}/${name}/prerm)
+endmacro()
+
 set(CPACK_COMPONENTS_ALL "")
 set(libraryPackage libopensubdivhex${OPENSUBDIVHEX_SOVERSION})
 opensubdivhex_add_debian_package(library ${libraryPackage} libs
@@ -108,11 +115,13 @@ if(TARGET opensubdivhex_python)
     "${libraryPackage} (= ${debianVersion})" python3-numpy
     "python3 (>= ${Python_VERSION_MAJOR}.${Python_VERSION_MINOR}~)"
     "python3 (<< ${Python_VERSION_MAJOR}.${nextMinor})")
+  opensubdivhex_clean_byte_code(python python3-opensubdivhex)
 
   # Where Debian's Blender, whose Python is the system's, looks for add-ons.
   opensubdivhex_add_debian_package(blender blender-opensubdivhex graphics
     "This package has the add-on for Blender: objects that follow a mesh,\nsubdivided into hexagons."
     "python3-opensubdivhex (= ${debianVersion})")
+  opensubdivhex_clean_byte_code(blender blender-opensubdivhex)
   set(CPACK_DEBIAN_BLENDER_PACKAGE_ARCHITECTURE all)
   set(CPACK_DEBIAN_BLENDER_PACKAGE_RECOMMENDS "blender (>= 3.4)")
 endif()

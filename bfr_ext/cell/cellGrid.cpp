@@ -8,10 +8,6 @@ namespace OpenSubdivHex::BfrExt::internal {
 
 namespace {
 
-// Cells of more points have no matrices of samples: beside faces of hundreds of vertices these would take minutes.
-constexpr int kMaxPointsOfCell = 128;
-constexpr int kMaxPointsOfFace = 512;
-
 // What lies between samples: of a quadratic surface up to a fifteenth of the range of heights, and of children, which
 // have fewer samples, mostly less than a quarter.
 constexpr double kFactorOfCell = 1.125;
@@ -23,10 +19,9 @@ constexpr double kExpected = 0.22;
 } // namespace
 
 CellGrid::CellGrid(int faceSize)
-    : _faceSize(faceSize), _places(faceSize, kNumSteps), _sources(_places.GetSize()) {
+    : _faceSize(faceSize), _places(faceSize, kNumSteps), _plan(faceSize, kNumSteps) {
     auto const &corners = HalfCell::kCorners;
-    add({faceSize > 0, 0, 1, {corners[0], corners[1], corners[2], corners[3]}}, kNumSteps,
-        {0, 0, 0});
+    add({faceSize > 0, 0, 1, {corners[0], corners[1], corners[2], corners[3]}}, kNumSteps);
 }
 
 CellGrid &CellGrid::Get(int faceSize) {
@@ -35,7 +30,7 @@ CellGrid &CellGrid::Get(int faceSize) {
 }
 
 // Adds a cell, and those that some steps make of it.
-int CellGrid::add(Shape const &shape, int numSteps, Source source) {
+int CellGrid::add(Shape const &shape, int numSteps) {
     std::size_t const number = _cells.size();
     _cells.emplace_back();
     _cells[number].factor = numSteps == kNumSteps ? kFactorOfCell : kFactorOfChildren;
@@ -45,16 +40,11 @@ int CellGrid::add(Shape const &shape, int numSteps, Source source) {
             shape.isWhole ? LeafPlaces::Place{i, {shape.scale, 0}}
                           : LeafPlaces::Place{shape.sector, shape.corners[std::size_t(i)]}));
         _cells[number].corners.push_back(sample);
-        if (numSteps == 0) {
-            source.corner = i;
-            _sources[std::size_t(sample)] = source;
-        }
     }
     _cells[number].samples = _cells[number].corners;
     int const numChildren = shape.isWhole ? _faceSize + 1 : 4;
     for (int i = 0; numSteps > 0 && i < numChildren; ++i) {
-        (numSteps == kNumSteps ? source.child : source.grandchild) = i;
-        int const child = add(getChild(shape, i), numSteps - 1, source);
+        int const child = add(getChild(shape, i), numSteps - 1);
         Cell &cell = _cells[number];
         cell.children.push_back(child);
         std::vector<int> const &samples = _cells[std::size_t(child)].samples;
@@ -77,30 +67,19 @@ CellGrid::Shape CellGrid::getChild(Shape const &shape, int child) {
     return {false, child - 1, 0, HalfCell::GetCornersAtEdge<Pair>(shape.scale)};
 }
 
-void CellGrid::Sample(RefinedCells &cells, std::size_t cell, std::vector<double> &samples) const {
-    CellValues const &values = cells[cell];
-    if (values.GetNumPoints() > kMaxPointsOfCell) {
-        sampleByCorners(cells, cell, samples);
-        return;
-    }
+void CellGrid::Sample(CellValues const &cell, std::vector<double> &samples) {
     samples.resize(3 * _places.GetSize());
-    SumUpPlaces(GetLeafMatrix<double>(values.GetType(), _places),
-                {values.GetPoint(0), std::ptrdiff_t(values.GetPaddedSize()), 3, nullptr,
-                 samples.data(), 3});
+    _evaluator.Evaluate(cell.GetType(), _plan, 3, cell.GetPoint(0),
+                        std::ptrdiff_t(cell.GetPaddedSize()), samples.data(), 3);
 }
 
-void CellGrid::Sample(CellType const &type, double const *controlPoints, RefinedCells &cells,
+void CellGrid::Sample(CellType const &type, double const *controlPoints,
                       std::vector<double> &samples) {
-    if (type.GetNumPoints() > kMaxPointsOfFace) {
-        cells.SetBase(type, controlPoints, 3);
-        sampleByCorners(cells, RefinedCells::kBase, samples);
-        return;
-    }
     samples.resize(3 * _places.GetSize());
     _evaluator.Evaluate(type, getPlan(type.IsInLattice()), 3, controlPoints, 3, samples.data(), 3);
 }
 
-void CellGrid::Sample(PlainFaceType const &type, double const *controlPoints, RefinedCells &,
+void CellGrid::Sample(PlainFaceType const &type, double const *controlPoints,
                       std::vector<double> &samples) {
     samples.resize(3 * _places.GetSize());
     _ringValues.Set(type.GetRings().GetRings(), std::size_t(type.GetNumPoints()), nullptr,
@@ -108,20 +87,8 @@ void CellGrid::Sample(PlainFaceType const &type, double const *controlPoints, Re
     _evaluator.Evaluate(type, _ringValues, getPlan(false), samples.data(), 3);
 }
 
-// From the limits at the corners of cells.
-void CellGrid::sampleByCorners(RefinedCells &cells, std::size_t cell,
-                               std::vector<double> &samples) const {
-    samples.resize(3 * _sources.size());
-    for (std::size_t i = 0; i < _sources.size(); ++i) {
-        Source const &source = _sources[i];
-        std::size_t const child = cells.GetFirstChild(cell) + std::size_t(source.child);
-        cells.EvaluateCorner(cells.GetFirstChild(child) + std::size_t(source.grandchild),
-                             source.corner, &samples[3 * i]);
-    }
-}
-
 CellPlan const &CellGrid::getPlan(bool isInLattice) {
-    std::unique_ptr<CellPlan const> &plan = _plans[isInLattice ? 1 : 0];
+    std::unique_ptr<CellPlan const> &plan = _plansOfBase[isInLattice ? 1 : 0];
     if (!plan) {
         std::vector<LeafPlaces::Place> places;
         for (std::size_t i = 0; i < _places.GetSize(); ++i) {

@@ -14,8 +14,8 @@ namespace OpenSubdivHex::BfrExt::internal {
 /// \brief The cells up to two steps from a cell on, and where their corners are among the places of its LeafPlaces: from
 /// the surface at these places, the *samples*, a cell and its children are measured.
 ///
-/// Samples of a cell are made by the matrix that its type has for tessellations, those of a base face as its
-/// tessellation of level 2 is.
+/// Samples of a cell are made as the places of a leaf of tessellations are, those of a base face as its tessellation of
+/// level 2 is.
 ///
 /// One thread uses it at a time.
 class CellGrid {
@@ -32,12 +32,11 @@ public:
     /// @{
 
     /// Samples of a cell that is no base face.
-    void Sample(RefinedCells &cells, std::size_t cell, std::vector<double> &samples) const;
+    void Sample(CellValues const &cell, std::vector<double> &samples);
     /// Samples of a base face, whose control points are three numbers each, without gaps.
-    void Sample(CellType const &type, double const *controlPoints, RefinedCells &cells,
-                std::vector<double> &samples);
+    void Sample(CellType const &type, double const *controlPoints, std::vector<double> &samples);
     /// Samples of a plain base face that is not in a lattice.
-    void Sample(PlainFaceType const &type, double const *controlPoints, RefinedCells &cells,
+    void Sample(PlainFaceType const &type, double const *controlPoints,
                 std::vector<double> &samples);
     /// @}
 
@@ -60,12 +59,6 @@ private:
         std::vector<int> children; // in the grid
         double factor;             // of the range of heights
     };
-    // A cell two steps on, whose corner a sample is where no matrix makes it.
-    struct Source {
-        int child;
-        int grandchild;
-        int corner;
-    };
     struct Shape {
         bool isWhole;
         int sector;
@@ -73,9 +66,8 @@ private:
         std::array<Pair, 4> corners; // of half cells
     };
 
-    int add(Shape const &shape, int numSteps, Source source);
+    int add(Shape const &shape, int numSteps);
     static Shape getChild(Shape const &shape, int child);
-    void sampleByCorners(RefinedCells &cells, std::size_t cell, std::vector<double> &samples) const;
     CellPlan const &getPlan(bool isInLattice);
     void measure(std::vector<double> const &samples, Cell const &cell,
                  CellMeasures &measures) const;
@@ -83,8 +75,8 @@ private:
     int const _faceSize;
     LeafPlaces const _places;
     std::vector<Cell> _cells;
-    std::vector<Source> _sources; // by sample
-    std::unique_ptr<CellPlan const> _plans[2];
+    CellPlan const _plan;
+    std::unique_ptr<CellPlan const> _plansOfBase[2];
     RingValues<double> _ringValues;
     PatchEvaluator<double> _evaluator;
 };

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <mutex>
 
 namespace OpenSubdivHex::BfrExt::internal {
 
@@ -33,7 +34,18 @@ void joinRuns(std::vector<PlaceRun> &runs) {
     runs.shrink_to_fit();
 }
 
+LeafPlaces const &getHalfPlaces(int numSteps) {
+    static std::array<LeafPlaces, kNumStepsOfHalves + 1> const kPlaces = {
+        LeafPlaces(0, 0), LeafPlaces(0, 1), LeafPlaces(0, 2), LeafPlaces(0, 3), LeafPlaces(0, 4)};
+    return kPlaces[std::size_t(numSteps)];
+}
+
 } // namespace
+
+struct CellPlan::Apart {
+    std::once_flag once;
+    std::unique_ptr<CellPlan const> plan;
+};
 
 LeafPlaces::LeafPlaces(int faceSize, int numSteps) : _faceSize(faceSize), _numSteps(numSteps) {
     if (faceSize > 0) {
@@ -129,43 +141,90 @@ void LeafPlaces::refine(Cell const &root, int numSteps) {
 
 CellPlan::CellPlan(int faceSize, int level, std::vector<LeafPlaces::Place> const &places, Use use,
                    bool isInLattice)
-    : _faceSize(faceSize) {
-    _nodes.push_back({0, true, 0, level, {}, nullptr, {}, {{1, 0}, {0, 1}}, {}});
+    : _faceSize(faceSize), _use(use), _isOfLeaf(false) {
+    _nodes.push_back({0, true, 0, level, {}, nullptr, {}, {{1, 0}, {0, 1}}, {}, nullptr});
     if (isInLattice && level <= kNumStepsOfFaces) {
         setLeaf(_nodes[0]);
     }
     for (std::size_t i = 0; i < places.size(); ++i) {
-        LeafPlaces::Place place = places[i];
-        if (use == Use::Points && place.coords[0] + place.coords[1] == 1) {
-            continue;
+        LeafPlaces::Place const &place = places[i];
+        if (use != Use::Points || place.coords[0] + place.coords[1] != 1) {
+            addPlace(place, MakeBasePoint(faceSize, place.sector, place.coords).toCoords, int(i));
         }
-        BasePoint const base = MakeBasePoint(faceSize, place.sector, place.coords);
-        Pair toCoords[2] = {base.toCoords[0], base.toCoords[1]};
-        std::size_t node = 0;
-        bool isCorner = false;
-        while (!_nodes[node].leaf) {
-            isCorner = use == Use::Derivatives && addCorner(node, place, toCoords, int(i));
-            if (isCorner) {
-                break;
-            }
-            CellStep const step = FindCellStep(_nodes[node].isWhole, place.sector, place.coords);
-            place.coords = step.map->Apply(place.coords);
-            Pair const before[2] = {toCoords[0], toCoords[1]};
-            for (std::size_t k = 0; k < 4; ++k) {
-                toCoords[k / 2][k % 2] = step.map->rows[k / 2][0] * before[0][k % 2] +
-                                         step.map->rows[k / 2][1] * before[1][k % 2];
-            }
-            node = findChild(node, step, toCoords);
-        }
-        if (isCorner) {
-            continue;
-        }
-        Node &leaf = _nodes[node];
-        if (!leaf.isWhole) {
-            place.sector = 0;
-        }
-        leaf.runs.push_back({int(leaf.leaf->Find(place)), int(i), 1});
     }
+    finish();
+}
+
+CellPlan::CellPlan(int faceSize, int numSteps)
+    : _faceSize(faceSize), _use(Use::AllPoints), _isOfLeaf(false) {
+    _nodes.push_back(
+        {0, faceSize > 0, 0, numSteps, {}, nullptr, {}, {{1, 0}, {0, 1}}, {}, nullptr});
+    setLeaf(_nodes[0]);
+    for (int row = 0; row < int(_nodes[0].leaf->GetSize()); ++row) {
+        _nodes[0].runs.push_back({row, row, 1});
+    }
+    finish();
+}
+
+CellPlan::CellPlan(CellPlan const &plan, Node const &leaf)
+    : _faceSize(plan._faceSize), _use(plan._use), _isOfLeaf(true) {
+    _nodes.push_back({0,
+                      leaf.isWhole,
+                      leaf.depth,
+                      leaf.numSteps,
+                      {},
+                      nullptr,
+                      {},
+                      {leaf.toCoords[0], leaf.toCoords[1]},
+                      {},
+                      nullptr});
+    for (PlaceRun const &run : leaf.runs) {
+        for (int i = 0; i < run.count; ++i) {
+            LeafPlaces::Place const &place = (*leaf.leaf)[std::size_t(run.row) + std::size_t(i)];
+            Pair toCoords[2] = {leaf.toCoords[0], leaf.toCoords[1]};
+            if (leaf.isWhole) {
+                BasePoint const base = MakeBasePoint(_faceSize, place.sector, place.coords);
+                for (std::size_t k = 0; k < 4; ++k) {
+                    toCoords[k / 2][k % 2] = std::ldexp(base.toCoords[k / 2][k % 2], leaf.depth);
+                }
+            }
+            addPlace(place, toCoords, run.place + i);
+        }
+    }
+    finish();
+}
+
+CellPlan const &CellPlan::TakeApart(Node const &leaf) const {
+    std::call_once(leaf.apart->once, [&] { leaf.apart->plan.reset(new CellPlan(*this, leaf)); });
+    return *leaf.apart->plan;
+}
+
+// Of node 0, with the derivatives of its coordinates by u and v.
+void CellPlan::addPlace(LeafPlaces::Place place, Pair const (&toCoords)[2], int number) {
+    Pair ofNode[2] = {toCoords[0], toCoords[1]};
+    std::size_t node = 0;
+    while (!_nodes[node].leaf) {
+        bool const mayBeCorner = _use == Use::Derivatives || _nodes[node].numSteps == 0;
+        if (mayBeCorner && addCorner(node, place, ofNode, number)) {
+            return;
+        }
+        CellStep const step = FindCellStep(_nodes[node].isWhole, place.sector, place.coords);
+        place.coords = step.map->Apply(place.coords);
+        Pair const before[2] = {ofNode[0], ofNode[1]};
+        for (std::size_t k = 0; k < 4; ++k) {
+            ofNode[k / 2][k % 2] = step.map->rows[k / 2][0] * before[0][k % 2] +
+                                   step.map->rows[k / 2][1] * before[1][k % 2];
+        }
+        node = findChild(node, step, ofNode);
+    }
+    Node &leaf = _nodes[node];
+    if (!leaf.isWhole) {
+        place.sector = 0;
+    }
+    leaf.runs.push_back({int(leaf.leaf->Find(place)), number, 1});
+}
+
+void CellPlan::finish() {
     for (Node &node : _nodes) {
         joinRuns(node.runs);
         node.corners.shrink_to_fit();
@@ -210,13 +269,16 @@ std::size_t CellPlan::findChild(std::size_t node, CellStep const &step, Pair con
                   nullptr,
                   {},
                   {toCoords[0], toCoords[1]},
-                  {}};
+                  {},
+                  nullptr};
     if (child.isWhole) {
         double const scale = std::ldexp(1.0, child.depth);
         child.toCoords[0] = {scale, 0};
         child.toCoords[1] = {0, scale};
     }
-    if (child.numSteps <= (child.isWhole ? kNumStepsOfWholes : kNumStepsOfHalves)) {
+    // A leaf that is taken apart has only corners in the end.
+    int const maxNumSteps = child.isWhole ? kNumStepsOfWholes : kNumStepsOfHalves;
+    if (child.numSteps <= maxNumSteps && !(_isOfLeaf && child.numSteps == 0)) {
         setLeaf(child);
     }
     _nodes[node].children.push_back(_nodes.size());
@@ -225,12 +287,18 @@ std::size_t CellPlan::findChild(std::size_t node, CellStep const &step, Pair con
 }
 
 void CellPlan::setLeaf(Node &node) {
-    int const size = node.isWhole ? _faceSize : 0;
-    std::unique_ptr<LeafPlaces const> &leafPlaces = _leafPlaces[{size, node.numSteps}];
-    if (!leafPlaces) {
-        leafPlaces = std::make_unique<LeafPlaces>(size, node.numSteps);
+    if (node.isWhole) {
+        std::unique_ptr<LeafPlaces const> &places = _wholePlaces[node.numSteps];
+        if (!places) {
+            places = std::make_unique<LeafPlaces>(_faceSize, node.numSteps);
+        }
+        node.leaf = places.get();
+    } else {
+        node.leaf = &getHalfPlaces(node.numSteps);
     }
-    node.leaf = leafPlaces.get();
+    if (node.numSteps > 0) {
+        node.apart = std::make_shared<Apart>();
+    }
 }
 
 } // namespace OpenSubdivHex::BfrExt::internal

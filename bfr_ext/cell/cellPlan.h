@@ -60,6 +60,9 @@ private:
 /// once.  Derivatives are those of the first cell that has the place as a corner, as far as that makes a
 /// difference.  Base faces in lattices are leaves themselves as long as their places are few; others are not: there are
 /// many types of these, and few of the cells in them.
+///
+/// Beside vertices of many faces a matrix would have a column for each of hundreds of points, and each face there has
+/// types of its own: leaves of such types are *taken apart* by further steps, whose matrices are sparse.
 class CellPlan {
 public:
     /// A place that is a corner of a cell.
@@ -69,6 +72,7 @@ public:
         Pair toCoords[2]; ///< of u and v: the derivatives by them of what the corner's are by
     };
     /// A cell with places, and which child of the cell before it is.
+    struct Apart;
     struct Node {
         std::size_t child;
         bool isWhole;
@@ -78,11 +82,12 @@ public:
         /// Of leaves, with the rows that are of places, ascending; a base face may have none.
         LeafPlaces const *leaf;
         std::vector<PlaceRun> runs;
-        /// Of a plan for derivatives: of u and v, the derivatives by them of what those of the leaf are
-        /// by, which are the coordinates in a half cell or its own u and v in a whole one; and the
-        /// corners of cells that are no leaves.
+        /// Of u and v, the derivatives by them of what those of the leaf are by, which are the coordinates in a
+        /// half cell or its own u and v in a whole one; and the corners of cells that are no leaves, in plans for
+        /// derivatives and where no steps are left.
         Pair toCoords[2];
         std::vector<CornerPlace> corners;
+        std::shared_ptr<Apart> apart; ///< of leaves with steps left
     };
     /// Points inside of the face, all points, or derivatives.
     enum class Use { Points, AllPoints, Derivatives };
@@ -92,19 +97,35 @@ public:
     /// \param isInLattice  whether many faces are of the type of the base face
     CellPlan(int faceSize, int level, std::vector<LeafPlaces::Place> const &places, Use use,
              bool isInLattice);
+    /// \brief Makes the plan of a cell that is a leaf, for all of its points.
+    ///
+    /// \param faceSize  of a whole cell; 0: of half cells
+    CellPlan(int faceSize, int numSteps);
 
-    /// Node 0 is the face.
+    /// Node 0 is the face, or the cell.
     Node const &operator[](std::size_t node) const { return _nodes[node]; }
+    /// \brief The plan of a leaf's places whose leaves are its children, or else have the places at their corners; made
+    /// when it is first asked for.
+    ///
+    /// Any number of threads may ask.
+    ///
+    /// \param leaf  of this plan, with steps left
+    CellPlan const &TakeApart(Node const &leaf) const;
 
 private:
+    CellPlan(CellPlan const &plan, Node const &leaf);
+    void addPlace(LeafPlaces::Place place, Pair const (&toCoords)[2], int number);
+    void finish();
     bool addCorner(std::size_t node, LeafPlaces::Place const &place, Pair const (&toCoords)[2],
                    int number);
     void setLeaf(Node &node);
     std::size_t findChild(std::size_t node, CellStep const &step, Pair const (&toCoords)[2]);
 
     int const _faceSize;
+    Use const _use;
+    bool const _isOfLeaf; // one that is taken apart
     std::vector<Node> _nodes;
-    std::map<std::pair<int, int>, std::unique_ptr<LeafPlaces const>> _leafPlaces;
+    std::map<int, std::unique_ptr<LeafPlaces const>> _wholePlaces; // by steps
 };
 
 } // namespace OpenSubdivHex::BfrExt::internal

@@ -9,6 +9,12 @@ namespace OpenSubdivHex::BfrExt::internal {
 
 namespace {
 
+// Whether a leaf is taken apart.
+bool isLarge(CellType const &type, CellPlan::Node const &leaf) {
+    constexpr int kMaxPoints = 128;
+    return type.GetNumPoints() > kMaxPoints && leaf.numSteps > 0;
+}
+
 // A leaf: a cell of some type, of whose rings its points may be those.
 struct Leaf {
     CellType const &type;
@@ -149,7 +155,8 @@ void PatchEvaluator<REAL>::evaluate(CellType const &type, CellPlan const &plan, 
                                     REAL const *controlPoints, std::ptrdiff_t stride) {
     _size = std::size_t(size);
     _paddedSize = StepMatrix::GetPaddedSize(_size);
-    if (plan[0].leaf) {
+    bool const isTakenApart = plan[0].leaf && isLarge(type, plan[0]);
+    if (plan[0].leaf && !isTakenApart) {
         if (!plan[0].runs.empty()) {
             evaluateLeaf(type, nullptr, plan[0], controlPoints, stride, nullptr);
         }
@@ -161,7 +168,7 @@ void PatchEvaluator<REAL>::evaluate(CellType const &type, CellPlan const &plan, 
         StepMatrix::Pad(controlPoints + std::ptrdiff_t(i) * stride, _size,
                         &points[i * _paddedSize]);
     }
-    descend(type, plan, 0, 0);
+    descend(type, isTakenApart ? plan.TakeApart(plan[0]) : plan, 0, 0);
 }
 
 // Makes the points of all children of a cell, whose own are at twice the depth; those of one child at a
@@ -172,6 +179,9 @@ void PatchEvaluator<REAL>::descend(CellType const &type, CellPlan const &plan, s
     std::vector<REAL> const &ownPoints = getPoints(2 * depth, 0);
     if (!plan[node].corners.empty()) {
         evaluateCorners(type, plan[node], ownPoints.data());
+    }
+    if (plan[node].children.empty()) {
+        return;
     }
     StepMatrix const &step = type.GetStep();
     step.Apply(ownPoints.data(), _paddedSize, getPoints(2 * depth + 1, step.GetNumRows()).data());
@@ -188,11 +198,13 @@ void PatchEvaluator<REAL>::descendToChildren(CellType const &type, CellPlan cons
         CellType::Child const &link = type.GetChildren()[child.child];
         std::vector<REAL> &childPoints = getPoints(2 * depth + 2, link.step.GetNumRows());
         link.step.CopyPoints(points.data(), _paddedSize, childPoints.data());
-        if (child.leaf) {
+        if (!child.leaf) {
+            descend(*link.type, plan, next, depth + 1);
+        } else if (isLarge(*link.type, child)) {
+            descend(*link.type, plan.TakeApart(child), 0, depth + 1);
+        } else {
             evaluateLeaf(*link.type, nullptr, child, childPoints.data(),
                          std::ptrdiff_t(_paddedSize), nullptr);
-        } else {
-            descend(*link.type, plan, next, depth + 1);
         }
     }
 }
@@ -307,18 +319,27 @@ void PatchEvaluator<REAL>::turnDerivatives(CellPlan::Node const &leaf) const {
 template <typename REAL>
 void PatchEvaluator<REAL>::evaluateCorners(CellType const &type, CellPlan::Node const &cell,
                                            REAL const *points) {
+    auto const sum = [&](std::vector<double> const &weights, std::size_t k) {
+        double result = 0;
+        REAL const *point = points + k;
+        for (double const weight : weights) {
+            result += weight * double(*point);
+            point += _paddedSize;
+        }
+        return result;
+    };
     for (CellPlan::CornerPlace const &corner : cell.corners) {
-        CellType::Corner const &ofType = type.GetCorners()[corner.corner];
         std::ptrdiff_t const first = std::ptrdiff_t(corner.place) * _resultStride;
-        for (std::size_t k = 0; k < _size; ++k) {
-            double along[2] = {};
-            for (std::size_t i = 0; i < 2; ++i) {
-                REAL const *point = points + k;
-                for (double const weight : ofType.derivatives[i]) {
-                    along[i] += weight * double(*point);
-                    point += _paddedSize;
-                }
+        if (_results) {
+            for (std::size_t k = 0; k < _size; ++k) {
+                _results[first + std::ptrdiff_t(k)] =
+                    REAL(sum(type.GetCornerPoints()[corner.corner], k));
             }
+            continue;
+        }
+        CellType::Corner const &ofType = type.GetCorners()[corner.corner];
+        for (std::size_t k = 0; k < _size; ++k) {
+            double const along[2] = {sum(ofType.derivatives[0], k), sum(ofType.derivatives[1], k)};
             for (std::size_t i = 0; i < 2; ++i) {
                 _derivatives[i][first + std::ptrdiff_t(k)] =
                     REAL(corner.toCoords[0][i] * along[0] + corner.toCoords[1][i] * along[1]);
@@ -374,13 +395,6 @@ std::vector<REAL> &PatchEvaluator<REAL>::getPoints(std::size_t place, std::size_
     points.resize(std::max(points.size(), numPoints * _paddedSize));
     return points;
 }
-
-template <typename REAL>
-PlaceMatrix<REAL> const &GetLeafMatrix(CellType const &type, LeafPlaces const &places) {
-    return getPointMatrices<REAL>({type, nullptr, places})[0];
-}
-
-template PlaceMatrix<double> const &GetLeafMatrix(CellType const &, LeafPlaces const &);
 
 template class PatchEvaluator<float>;
 template class PatchEvaluator<double>;

@@ -66,10 +66,6 @@ private:
     std::ptrdiff_t _resultStride = 0;
 };
 
-/// The matrix of a type for the places of a leaf.
-template <typename REAL>
-PlaceMatrix<REAL> const &GetLeafMatrix(CellType const &type, LeafPlaces const &places);
-
 } // namespace OpenSubdivHex::BfrExt::internal
 
 #endif

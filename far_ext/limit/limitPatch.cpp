@@ -245,7 +245,8 @@ int LimitPatchGatherer::findFirstFace(VertexFan const &fan, int &firstSide) {
     return best;
 }
 
-// The corners of a face begin at local, unless corner 0 stands out.
+// The corners of a face begin at local, or, where a line stands out, at that end of it which comes before: a long edge
+// has one order of its ends, and the ends of a diagonal are alike.
 void LimitPatchGatherer::addFace(Index face, int local, bool isRing, LimitPatch &patch) {
     Index const next = Index(patch.faceSizes.size());
     if (_faces.FindOrSet(face, next) != next) {
@@ -254,8 +255,10 @@ void LimitPatchGatherer::addFace(Index face, int local, bool isRing, LimitPatch 
     Index const first = _level.faceFirstCorner[face];
     int const size = _level.faceFirstCorner[face + 1] - first;
     float const diagonal = _level.GetDiagonalSharpness(face);
-    if (_level.IsHalfFace(face) || Crease::IsSharp(diagonal)) {
+    if (_level.IsHalfFace(face)) {
         local = 0;
+    } else if (Crease::IsSharp(diagonal)) {
+        local = local < kDiagonalEnd ? kDiagonalStart : kDiagonalEnd;
     }
     Index const patchFirst = Index(patch.faceVerts.size());
     for (int i = 0; i < size; ++i) {

@@ -57,6 +57,30 @@ long measureSurfaces(int n) {
     return GetPeakBytes() - before;
 }
 
+/// The most that the derivatives at a pole take, at a time, all of whose \p n edges but one are creases.
+long measureCreases(int n) {
+    Shape shape = MakePole(n, 1);
+    for (int i = 1; i < n; ++i) {
+        shape.creaseVertexPairs.insert(shape.creaseVertexPairs.end(), {0, 1 + i});
+        shape.creaseSharpness.push_back(Sdc::Crease::SHARPNESS_INFINITE);
+    }
+    auto const refiner = createRefiner(shape);
+    ResetPeakBytes();
+    long const before = CountLiveBytes();
+    auto const factory = SurfaceFactory::Create(*refiner);
+    BfrExt::Surface<double> surface;
+    std::vector<double> weights[3];
+    double const uv[2] = {0, 0}; // the pole
+    for (int face = 0; face < n; ++face) {
+        EXPECT_TRUE(factory->InitVertexSurface(face, &surface));
+        for (std::vector<double> &row : weights) {
+            row.resize(std::size_t(surface.GetNumControlPoints()));
+        }
+        surface.EvaluateStencil(uv, weights[0].data(), weights[1].data(), weights[2].data());
+    }
+    return GetPeakBytes() - before;
+}
+
 /// The most that making the limit table of level 0 of such a pole takes, at a time.
 long measureTable(int n) {
     auto const refiner = createRefiner(MakePole(n, 2));
@@ -74,6 +98,13 @@ TEST(PoleMemoryTest, OfSurfacesGrowsWithTheFaces) {
     long const few = measureSurfaces(16);
     EXPECT_LE(measureSurfaces(64), 2 * few);
     EXPECT_LE(measureSurfaces(256), 4 * few);
+}
+
+// All faces share the limit at the pole, which has a tangent plane for each: its weights alone grow with the square.
+TEST(PoleMemoryTest, OfCreasesGrowsWithTheSquareOfTheFaces) {
+    measureCreases(8); // what threads keep
+    long const few = measureCreases(24);
+    EXPECT_LE(measureCreases(48), 4 * few);
 }
 
 TEST(PoleMemoryTest, OfTablesGrowsWithTheFaces) {

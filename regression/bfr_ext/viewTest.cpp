@@ -1019,7 +1019,7 @@ TEST(View, ThicknessIsCloseToThatOfTheSurface) {
                 auto const measure = [&](std::size_t cell) {
                     bool const isWhole = refined[cell].GetType().IsWhole();
                     CellGrid grid(isWhole ? refined[cell].GetType().GetNumCorners() : 0);
-                    grid.Sample(refined, cell, samples);
+                    grid.Sample(refined[cell], samples);
                     CellMeasures own;
                     std::vector<CellMeasures> children(std::size_t(grid.GetNumChildren()));
                     grid.Measure(samples, own);

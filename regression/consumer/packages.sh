@@ -31,9 +31,10 @@ test_packages() {
     mkdir "$root/packages"
     cp build/package/packages/*.deb "$root/packages"
     cp -r regression/consumer tutorials/meshes/lantern.obj regression/consumer/debian.sh "$root"
-    # What is mounted is gone with the process.  The network is that of this machine.
+    # What is mounted is gone with the process.  The network is that of this machine, its environment is not.
     cp /etc/resolv.conf "$root/etc/resolv.conf"
-    unshare --mount sh -c "mount -t proc proc '$root/proc' && exec chroot '$root' /debian.sh" ||
+    unshare --mount sh -c "mount -t proc proc '$root/proc' &&
+        exec env -i HOME=/root PATH=/usr/sbin:/usr/bin:/sbin:/bin chroot '$root' /debian.sh" ||
         fail "the packages do not work in a bare Debian"
     rm -rf "$root"
     test_addon_package

@@ -45,6 +45,40 @@ inline Far::TopologyDescriptor DescribeSheet() {
     return descriptor;
 }
 
+/// \brief Five by five squares, with a channel whose values are the vertices; vertex 6 y + x is at (x, y).
+class Grid {
+public:
+    Grid() {
+        for (int v = 0; v < 36; ++v) {
+            int const x = v % 6, y = v / 6;
+            positions.insert(positions.end(), {float(x), float(y), 0});
+            uvs.insert(uvs.end(), {float(x), float(y)});
+            if (x < 5 && y < 5) {
+                _corners.insert(_corners.end(), {v, v + 1, v + 7, v + 6});
+            }
+        }
+        _channel.numValues = 36;
+        _channel.valueIndices = _corners.data();
+        descriptor.numVertices = 36;
+        descriptor.numFaces = int(_sizes.size());
+        descriptor.numVertsPerFace = _sizes.data();
+        descriptor.vertIndicesPerFace = _corners.data();
+        descriptor.numFVarChannels = 1;
+        descriptor.fvarChannels = &_channel;
+    }
+    Grid(Grid const &) = delete;
+    Grid &operator=(Grid const &) = delete;
+
+    Far::TopologyDescriptor descriptor;
+    std::vector<float> positions; ///< x, y and 0 of each vertex
+    std::vector<float> uvs;       ///< x and y of each vertex
+
+private:
+    std::vector<int> _sizes = std::vector<int>(25, 4);
+    std::vector<int> _corners;
+    Far::TopologyDescriptor::FVarChannel _channel;
+};
+
 struct Point {
     void Clear() { x = y = z = 0; }
     void AddWithWeight(Point const &point, float weight) {

@@ -114,6 +114,11 @@ std::vector<Row> const &GetRows() {
         result.push_back({"view-bounds",
                           "surfaces for a further camera, bounds kept, with their points, 1 thread",
                           "own, uniform level that is as close", 1, 4});
+        // Types at such a vertex have all of its faces in them.
+        result.push_back({"view-pole",
+                          "surfaces for a camera, 64 differently sharp edges at a vertex, empty "
+                          "cache, per face, 1 thread",
+                          "own, 16 such edges", 0.3, 1});
         result.push_back({"polygons-1", "polygons with their base faces, per corner, 1 thread",
                           "loop over Far::TopologyLevel", 0.5, 1});
         result.push_back({"polygons-2", "polygons with their base faces, per corner, 2 threads",

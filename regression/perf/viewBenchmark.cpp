@@ -126,6 +126,35 @@ Contest makeContest(BenchMesh const &mesh) {
     return contest;
 }
 
+/// A bipyramid, with \p n differently sharp edges at one tip.
+BenchMesh makePole(int n) {
+    Shape shape = MakeBipyramid(n);
+    int const tip = shape.GetNumVertices() - 1;
+    for (int i = 0; i < n; ++i) {
+        shape.creaseVertexPairs.insert(shape.creaseVertexPairs.end(), {i, tip});
+        shape.creaseSharpness.push_back(0.5F + 3 * float(i) / float(n));
+    }
+    return {std::make_shared<Shape const>(std::move(shape)), "pole", "small", 0};
+}
+
+/// All types are made again.
+Contest makePoleContest() {
+    Contest contest;
+    for (int const n : {64, 16}) {
+        auto const workspace = std::make_shared<Workspace>(makePole(n));
+        contest.contestants.push_back(
+            makeContestant("BfrExt::View, " + std::to_string(n) + " edges", [=] {
+                auto const factory = BfrExt::SurfaceFactory::Create(*workspace->refiner);
+                BfrExt::CellForest const forest =
+                    workspace->view.MakeForest(*factory, workspace->positions.data(), 3);
+                workspace->Stream(BfrExt::PatchStream<float>(*factory, forest));
+                return factory->GetNumFaces();
+            }));
+    }
+    contest.pairings = {{"view-pole", 0, {1}}};
+    return contest;
+}
+
 } // namespace
 
 void AddViewBenchmarks(Suite &suite) {
@@ -140,6 +169,8 @@ void AddViewBenchmarks(Suite &suite) {
     for (BenchMesh const &mesh : suite.GetIrregularMeshes()) {
         add(mesh, Memory::Default);
     }
+    suite.AddContest({"surfaces at a vertex of many edges", "face", makePole(64), Memory::Default},
+                     makePoleContest);
 }
 
 } // namespace OpenSubdivHex::Regression

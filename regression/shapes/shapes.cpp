@@ -450,6 +450,15 @@ Shape MakePole(int n, int numTimes) {
     return builder.Take();
 }
 
+Shape MakePoleOfSpokes(int n) {
+    Shape shape = MakePole(n, 1);
+    for (int i = 0; i < n; ++i) {
+        shape.creaseVertexPairs.insert(shape.creaseVertexPairs.end(), {0, 1 + i});
+        shape.creaseSharpness.push_back(0.5F + 3 * float(i) / float(n));
+    }
+    return shape;
+}
+
 std::vector<Shape> const &GetShapes() {
     static std::vector<Shape> const shapes = makeShapes();
     return shapes;

@@ -48,6 +48,8 @@ Shape MakePrism(int n);
 /// \brief A disc: \p n faces around vertex 0, its pole, which each has \p numTimes times, and two rings of as
 /// many quads around these.  Faces 0 to \p n - 1 are those at the pole; vertex 1 + i is where two of them meet.
 Shape MakePole(int n, int numTimes);
+/// \brief The pole of MakePole(n, 1), whose \p n edges to vertices 1, 2 ... are all differently sharp, by up to 3.5.
+Shape MakePoleOfSpokes(int n);
 
 /// Two pyramids with \p n sides, base to base; the tips are the last two vertices.
 Shape MakeBipyramid(int n);
