@@ -78,11 +78,18 @@ struct FaceTags {
     float diagonal; // share of the rule of a sharp diagonal
     TagRange<SectorCorner> sectorCorners;
     TagRange<IrregularCorner> irregularCorners;
-    TagRange<QuadCorner> quadCorners;
+    std::array<QuadFlags, kHexagon> quadFlags; // by corner; none of larger faces have any
+
+    auto GetQuadWords() const {
+        std::array<std::uint32_t, sizeof quadFlags / sizeof(std::uint32_t)> words;
+        std::memcpy(words.data(), quadFlags.data(), sizeof words);
+        return words;
+    }
 
     bool operator==(FaceTags const &other) const {
-        bool result = isHalf == other.isHalf && size == other.size && diagonal == other.diagonal;
-        CornerTags::ForEachKind(
+        bool result = isHalf == other.isHalf && size == other.size && diagonal == other.diagonal &&
+                      GetQuadWords() == other.GetQuadWords();
+        CornerTags::ForEachListedKind(
             [&](auto const &tags, auto const &otherTags) {
                 auto const isSame = [&](auto const &x, auto const &y) {
                     return getWords(x, firstCorner) == getWords(y, other.firstCorner);
@@ -102,7 +109,7 @@ struct FaceTags {
                 hash = (hash ^ (std::uint64_t(high) << 32 | low)) * kFactor;
             };
             add(getBits(tags.diagonal), 0);
-            CornerTags::ForEachKind(
+            CornerTags::ForEachListedKind(
                 [&](auto const &ofKind) {
                     for (auto const &tag : ofKind) {
                         auto const words = getWords(tag, tags.firstCorner);
@@ -112,6 +119,10 @@ struct FaceTags {
                     }
                 },
                 tags);
+            auto const words = tags.GetQuadWords();
+            for (std::size_t i = 0; i < words.size(); i += 2) {
+                add(words[i], words[i + 1]);
+            }
             hash ^= hash >> 32;
             return std::size_t(hash);
         }
@@ -181,8 +192,11 @@ void RefinementRules::makeRuledVertices(bool hasIrregular) {
             }
         }
     };
-    for (SharpVertex const &sharp : _level.sharpVerts) {
+    for (SharpVertex sharp : _level.sharpVerts) {
         addIrregularBefore(sharp.vert);
+        if (hasIrregular) {
+            setLineWeights(sharp);
+        }
         VertexRule rule = {sharp.faceWeight, 0, {}, {}, nullptr};
         auto const add = [&rule](Index source, double weight) {
             rule.sources[rule.numSources] = source;
@@ -202,21 +216,58 @@ void RefinementRules::makeRuledVertices(bool hasIrregular) {
     addIrregularBefore(_level.numVertices);
 }
 
+// Between first rows of quads, neighbors along the line have other weights.
+void RefinementRules::setLineWeights(SharpVertex &sharp) const {
+    if (_level.quadCorners.empty() || _faceMask != FaceMask::Smooth || sharp.creaseShare == 0) {
+        return;
+    }
+    double weight = -1;
+    for (Index k = _level.vertFirstFace[sharp.vert]; k < _level.vertFirstFace[sharp.vert + 1];
+         ++k) {
+        Index const corner = _level.GetVertexCorner(k);
+        QuadFlags const flags = _level.quadCorners.GetFlags(corner);
+        if (!IsOnQuadLine(flags)) {
+            return;
+        }
+        weight = std::max(weight, FindLineQuadRow(_level.numHexagonalSteps, flags).neighborWeight);
+    }
+    if (weight < 0) {
+        return;
+    }
+    // An edge of phase A has the larger one.
+    double const largest = std::max(sharp.neighborWeights[0], sharp.neighborWeights[1]);
+    for (double &neighborWeight : sharp.neighborWeights) {
+        double const changed = sharp.creaseShare * weight * (neighborWeight / largest);
+        sharp.vertexWeight += neighborWeight - changed;
+        neighborWeight = changed;
+    }
+}
+
 // Where the paths of all corners of a vertex tell its weights, these have the share that its sharpness leaves.
 void RefinementRules::makeVertexWeights() {
-    if (_level.quadCorners.empty() || _level.numVertices == 0) {
+    if (_level.quadCorners.empty() || _level.numVertices == 0 || _faceMask != FaceMask::Smooth) {
         return;
     }
     struct OfCorner {
-        float weight = -1; // with so few digits it is exact
+        double weight = -1;
         float share = 0;
     };
-    auto const find = [this](QuadCorner const &quad) -> OfCorner {
-        QuadRow const row = FindQuadRow(_level.numHexagonalSteps, quad.flags);
-        return {float(row.vertexWeight), quad.flags.GetShare()};
+    // Before the first step the other faces around a vertex of the first row beside a line have the weight of all.
+    bool const isBase = _level.numHexagonalSteps == 0;
+    OfCorner const ofOthers =
+        isBase ? OfCorner{GetPlainVertexMask(kQuad).faceWeight, 1} : OfCorner();
+    auto const find = [&](QuadFlags flags) -> OfCorner {
+        QuadRow const row = FindQuadRow(_level.numHexagonalSteps, flags);
+        QuadRow const ofLine = FindLineQuadRow(_level.numHexagonalSteps, flags);
+        if (ofLine.vertexWeight < 0 || ofLine.share == 0) {
+            return {row.vertexWeight, row.share};
+        }
+        double const share = double(ofLine.share);
+        double const rest = isBase ? ofOthers.weight : row.vertexWeight;
+        return {share * ofLine.vertexWeight + (1 - share) * rest, 1};
     };
-    // In the constant levels few vertices have such weights.
-    bool const areFew = _level.numHexagonalSteps >= kNumStepsToConstantMasks;
+    // In the constant levels and before the first step few vertices have such weights.
+    bool const areFew = isBase || _level.numHexagonalSteps >= kNumStepsToConstantMasks;
     std::vector<Index> few;
     Buffer<OfCorner> ofCorners;
     if (areFew) {
@@ -226,10 +277,9 @@ void RefinementRules::makeVertexWeights() {
         SortUnique(few);
     } else {
         ofCorners.Resize(std::size_t(_level.numCorners));
-        std::fill_n(ofCorners.data(), ofCorners.size(), OfCorner());
-        ParallelFor(Index(_level.quadCorners.size()), [&](Index i) {
-            QuadCorner const &quad = _level.quadCorners[std::size_t(i)];
-            ofCorners[std::size_t(quad.corner)] = find(quad);
+        ParallelFor(_level.numCorners, [&](Index corner) {
+            QuadFlags const flags = _level.quadCorners.GetFlags(corner);
+            ofCorners[std::size_t(corner)] = flags.HasAny() ? find(flags) : OfCorner();
         });
     }
     VertexVertexMask const plain = GetPlainVertexMask(kFVertexFaces);
@@ -239,8 +289,8 @@ void RefinementRules::makeVertexWeights() {
         if (!areFew) {
             return ofCorners[std::size_t(corner)];
         }
-        auto const quads = FindCornerTags(_level.quadCorners, corner, corner + 1);
-        return quads.empty() ? OfCorner() : find(quads[0]);
+        QuadFlags const flags = _level.quadCorners.GetFlags(corner);
+        return flags.HasAny() ? find(flags) : ofOthers;
     };
     std::map<std::vector<double>, int> positions;
     std::vector<double> weights;
@@ -257,7 +307,7 @@ void RefinementRules::makeVertexWeights() {
             if (share == 0) {
                 break;
             }
-            weights.push_back(double(ofCorner.weight));
+            weights.push_back(ofCorner.weight);
             weights[0] -= weights.back();
         }
         if (share == 0) {
@@ -322,7 +372,7 @@ public:
         std::unordered_map<FaceTags, int, FaceTags::Hash> ruleOfTags;
         FaceTags before = {}; // of the last face: those that follow one another are mostly alike
         FaceTags tags = {};
-        CornerTags::ForEachKind(
+        CornerTags::ForEachListedKind(
             [](auto const &all, auto &read) {
                 read = {all.data(), all.data()};
             },
@@ -359,15 +409,16 @@ private:
     std::vector<Index> findSharpFaces() const;
     void addFace(Index face, int rule);
     void readTags(Index face, FaceTags &tags);
-    QuadRow findQuadRow(QuadCorner const &quad) const {
-        return FindQuadRow(_level.numHexagonalSteps, quad.flags);
-    }
+    // What paths tell of a corner in a face, or half a hexagon, of some size.
+    QuadRow findLineQuadRow(QuadFlags flags) const;
+    QuadRow findQuadRow(QuadFlags flags, int size) const;
     bool hasOwnRows(FaceTags const &tags) const;
-    Index findNextFace(FaceTags const &read) const;
+    Index findNextFace(FaceTags const &read);
     void addRule(FaceTags const &tags);
     void addRow(std::vector<double> const &row);
     static void addMask(double const (&mask)[kHexagon], int corner, bool isBackwards, double share,
                         std::vector<double> &row);
+    static void addLineMask(QuadRow const &ofLine, int corner, std::vector<double> &row);
     void addIrregularWeights(IrregularCorner const &irregular, int corner,
                              std::vector<double> &row);
     // The entries of one corner.
@@ -389,8 +440,9 @@ private:
     IrregularMasks _masks;
     QuadMask _quadMask;
     double _halfFaceWeights[kTrapezoid][kTrapezoid];
-    Index _endDense = 0; // behind the last face with a dense rule
-    Index _endRead = 0;  // behind the last face whose tags were read
+    Index _endDense = 0;  // behind the last face with a dense rule
+    Index _endRead = 0;   // behind the last face whose tags were read
+    Index _nextQuad = -1; // the first corner behind that with flags of quads, or the end
 };
 
 // Faces with a feature that is no tag of a corner, ascending.
@@ -430,7 +482,7 @@ void RefinementRules::DenseRuleMaker::readTags(Index face, FaceTags &tags) {
     if (!_isVertex) {
         return;
     }
-    CornerTags::ForEachKind(
+    CornerTags::ForEachListedKind(
         [end = tags.firstCorner + tags.size](auto const &all, auto &read) {
             read.first = read.behind;
             while (read.behind != all.data() + all.size() && read.behind->corner < end) {
@@ -438,12 +490,20 @@ void RefinementRules::DenseRuleMaker::readTags(Index face, FaceTags &tags) {
             }
         },
         _level, tags);
+    for (int i = 0; i < kHexagon; ++i) {
+        tags.quadFlags[std::size_t(i)] =
+            i < tags.size ? _level.quadCorners.GetFlags(tags.firstCorner + i) : QuadFlags();
+    }
 }
 
 // The first face with tags of corners behind those that have been read, mostly the next one; else the end.
-Index RefinementRules::DenseRuleMaker::findNextFace(FaceTags const &read) const {
-    Index corner = _level.numCorners;
-    CornerTags::ForEachKind(
+Index RefinementRules::DenseRuleMaker::findNextFace(FaceTags const &read) {
+    Index const endRead = _level.faceFirstCorner[_endRead];
+    if (_nextQuad < endRead) {
+        _nextQuad = QuadCorners::Iterator(_level.quadCorners, endRead, _level.numCorners)->corner;
+    }
+    Index corner = _nextQuad;
+    CornerTags::ForEachListedKind(
         [&corner](auto const &all, auto const &ofKind) {
             if (ofKind.behind != all.data() + all.size()) {
                 corner = std::min(corner, ofKind.behind->corner);
@@ -462,15 +522,24 @@ void RefinementRules::DenseRuleMaker::addRow(std::vector<double> const &row) {
     _rules._weights.insert(_rules._weights.end(), row.begin(), row.end());
 }
 
+QuadRow RefinementRules::DenseRuleMaker::findQuadRow(QuadFlags flags, int size) const {
+    return size == kHexagon && _faceMask == FaceMask::Smooth
+               ? FindQuadRow(_level.numHexagonalSteps, flags)
+               : QuadRow();
+}
+
+QuadRow RefinementRules::DenseRuleMaker::findLineQuadRow(QuadFlags flags) const {
+    return _faceMask == FaceMask::Smooth ? FindLineQuadRow(_level.numHexagonalSteps, flags)
+                                         : QuadRow();
+}
+
 // Whether any corner does not follow the circulant mask: flags alone are no reason.
 bool RefinementRules::DenseRuleMaker::hasOwnRows(FaceTags const &tags) const {
     return tags.isHalf || tags.diagonal > 0 || !tags.sectorCorners.empty() ||
            !tags.irregularCorners.empty() ||
-           (tags.size == kHexagon && std::any_of(tags.quadCorners.begin(), tags.quadCorners.end(),
-                                                 [this](QuadCorner const &quad) {
-                                                     return quad.flags.GetShare() > 0 &&
-                                                            findQuadRow(quad).mask != nullptr;
-                                                 }));
+           std::any_of(tags.quadFlags.begin(), tags.quadFlags.end(), [&](QuadFlags flags) {
+               return findQuadRow(flags, tags.size).HasMask() || findLineQuadRow(flags).HasMask();
+           });
 }
 
 // Corners of a face with nothing of their own have the rows of its circulant rule.
@@ -481,7 +550,6 @@ void RefinementRules::DenseRuleMaker::addRule(FaceTags const &tags) {
     double const sharp = tags.isHalf ? 1 : tags.diagonal;
     SectorCorner const *sector = tags.sectorCorners.begin();
     IrregularCorner const *irregular = tags.irregularCorners.begin();
-    QuadCorner const *quad = tags.quadCorners.begin();
     for (int i = 0; i < size; ++i) {
         Index const corner = tags.firstCorner + i;
         double towards = 0;
@@ -497,14 +565,14 @@ void RefinementRules::DenseRuleMaker::addRule(FaceTags const &tags) {
         IrregularCorner const *const ofIrregular =
             irregular != tags.irregularCorners.end() && irregular->corner == corner ? irregular++
                                                                                     : nullptr;
-        QuadCorner const *const ofQuad =
-            quad != tags.quadCorners.end() && quad->corner == corner ? quad++ : nullptr;
-        QuadRow const byPath =
-            ofQuad && size == kHexagon ? findQuadRow(*ofQuad) : QuadRow{nullptr, false, -1, -1};
-        float const ofPath = byPath.mask ? ofQuad->flags.GetShare() : 0;
+        QuadFlags const flags = i < kHexagon ? tags.quadFlags[std::size_t(i)] : QuadFlags();
+        QuadRow const ofLine = findLineQuadRow(flags);
+        QuadRow const byPath = findQuadRow(flags, size);
+        double const ofPath = !byPath.HasMask() ? 0 : ofLine.HasMask() ? 1 : double(byPath.share);
         std::size_t const circulantRow =
             _rules._circulants[std::size_t(size)] + std::size_t(size - i);
-        if (sharp == 0 && towards == 0 && !hasOneFace && !ofIrregular && ofPath == 0) {
+        if (sharp == 0 && towards == 0 && !hasOneFace && !ofIrregular && ofPath == 0 &&
+            !ofLine.HasMask()) {
             _rules._rows.push_back(circulantRow);
             continue;
         }
@@ -534,6 +602,9 @@ void RefinementRules::DenseRuleMaker::addRule(FaceTags const &tags) {
         }
         if (ofPath > 0) {
             addMask(*byPath.mask, i, byPath.isBackwards, ofPath, row);
+        }
+        if (ofLine.HasMask()) {
+            addLineMask(ofLine, i, row);
         }
         addRow(row);
     }
@@ -581,6 +652,28 @@ void RefinementRules::DenseRuleMaker::addMask(double const (&mask)[kHexagon], in
     for (int j = 0; j < kHexagon; ++j) {
         double &weight = row[std::size_t((corner + (isBackwards ? kHexagon - j : j)) % kHexagon)];
         weight += share * (mask[j] - weight);
+    }
+}
+
+// Mixes its share of a line's row into that of a corner, whose weights these are so far.
+void RefinementRules::DenseRuleMaker::addLineMask(QuadRow const &ofLine, int corner,
+                                                  std::vector<double> &row) {
+    double const share = double(ofLine.share);
+    if (ofLine.size == kHexagon) {
+        addMask(*ofLine.mask, corner, ofLine.isBackwards, share, row);
+        return;
+    }
+    // A quad, half a face, or one half of a hexagon.
+    constexpr int kFace[kTrapezoid] = {0, 1, 2, 3};
+    auto const &places =
+        row.size() == kHexagon ? kHexagonHalves[corner < kDiagonalEnd ? 1 : 0] : kFace;
+    int const place = int(std::find(places, places + kTrapezoid, corner) - places);
+    for (double &weight : row) {
+        weight *= 1 - share;
+    }
+    for (int j = 0; j < kTrapezoid; ++j) {
+        int const next = (place + (ofLine.isBackwards ? kTrapezoid - j : j)) % kTrapezoid;
+        row[std::size_t(places[next])] += share * (*ofLine.mask)[j];
     }
 }
 

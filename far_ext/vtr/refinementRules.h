@@ -190,6 +190,7 @@ private:
     }
     void makeCirculantRules();
     void endFaceRuns();
+    void setLineWeights(SharpVertex &sharp) const;
     void makeVertexWeights();
     void makeRuledVertices(bool hasIrregular);
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "quadMaskSearch.h"
 
+#include "besideLines.h"
 #include "evenness.h"
 #include "localSubdivision.h"
 #include "ripple.h"
@@ -40,6 +41,8 @@ using FarExt::internal::RefinementRules;
 constexpr int kQuad = 4;
 constexpr int kHexagon = 6;
 constexpr int kNumRegular = 4; // faces at a vertex
+constexpr int kNumOnLine = 2;
+constexpr int kNumRowsBesideLine = 2; // of quads, that surfaces are judged at
 constexpr int kNumInQuads = FarExt::kNumStepsToConstantMasks - 1;
 constexpr double kParts = 4096;
 constexpr double kPartsInQuads = 256;
@@ -56,23 +59,44 @@ constexpr TableRow kTable[] = {
 };
 constexpr int kNumRows = int(std::size(kTable));
 
+constexpr int kNone = -1;
+struct LineTableRow {
+    int size;
+    char const *path;
+    int ofVertex;
+    int ofNeighbor;
+    int parts[kHexagon];
+};
+constexpr LineTableRow kLineTable[] = {
+#include "far_ext/rules/quadLineRows.inl"
+};
+constexpr int kNumAllRows = kNumRows + int(std::size(kLineTable));
+LineTableRow const &getLineRow(int position) { return kLineTable[position - kNumRows]; }
+
 /// All masks by paths, and those in quads, of which some are searched for.
 struct QuadMasks {
     struct Row {
-        double ofVertex;
-        double weights[kHexagon]; // of a hexagon
+        double ofVertex;   // below 0: none
+        double ofNeighbor; // along a line; below 0: none
+        int size;
+        double weights[kHexagon];
         bool HasMask() const { return weights[0] > 0 || weights[1] > 0; }
     };
-    std::array<Row, kNumRows> rows;
+    std::array<Row, kNumAllRows> rows;
     double inQuads[kNumInQuads][kQuad]; // by level, from 1 on
 };
 
 QuadMasks getShippedMasks() {
     QuadMasks masks;
-    for (int i = 0; i < kNumRows; ++i) {
-        masks.rows[std::size_t(i)].ofVertex = kTable[i].ofVertex / kParts;
-        std::transform(kTable[i].parts, kTable[i].parts + kHexagon,
-                       masks.rows[std::size_t(i)].weights, [](int part) { return part / kParts; });
+    for (int i = 0; i < kNumAllRows; ++i) {
+        bool const isOfLine = i >= kNumRows;
+        QuadMasks::Row &row = masks.rows[std::size_t(i)];
+        row.ofVertex = (isOfLine ? getLineRow(i).ofVertex : kTable[i].ofVertex) / kParts;
+        row.ofNeighbor = (isOfLine ? getLineRow(i).ofNeighbor : kNone) / kParts;
+        row.size = isOfLine ? getLineRow(i).size : kHexagon;
+        auto const &parts = isOfLine ? getLineRow(i).parts : kTable[i].parts;
+        std::transform(parts, parts + kHexagon, row.weights,
+                       [](int part) { return part / kParts; });
     }
     for (int i = 0; i < kNumInQuads; ++i) {
         std::copy_n(FarExt::ComputeQuadMask(i + 1).inQuad, kQuad, masks.inQuads[i]);
@@ -88,12 +112,13 @@ using Points = Eigen::Matrix<double, Eigen::Dynamic, kNumColumns, Eigen::RowMajo
 class Surface {
 public:
     Surface(Shape const &shape, int level) {
-        _refiner = FarExt::TopologyRefinerFactory::Create(ShapeDescriptor(shape).Get(),
-                                                          OpenSubdiv::Sdc::Options(),
+        OpenSubdiv::Sdc::Options options;
+        options.SetVtxBoundaryInterpolation(OpenSubdiv::Sdc::Options::VTX_BOUNDARY_EDGE_ONLY);
+        _refiner = FarExt::TopologyRefinerFactory::Create(ShapeDescriptor(shape).Get(), options,
                                                           {HexSchemeOptions{FaceMask::Smooth}});
-        FarExt::TopologyRefiner::UniformOptions options(level);
-        options.fullTopologyInLastLevel = true;
-        if (!_refiner || !_refiner->RefineUniform(options)) {
+        FarExt::TopologyRefiner::UniformOptions uniform(level);
+        uniform.fullTopologyInLastLevel = true;
+        if (!_refiner || !_refiner->RefineUniform(uniform)) {
             throw std::runtime_error(shape.name + " cannot be refined");
         }
         _mesh = MakeSurfaceLevels(*_refiner, shape).back().mesh;
@@ -242,6 +267,7 @@ private:
     struct CornerRow {
         int position = -1;
         bool isBackwards = false;
+        bool isOnLine = false;
     };
 
     FarExt::internal::MeshLevels const &getLevels() const { return _refiner->GetHierarchy().mesh; }
@@ -255,8 +281,13 @@ private:
         Level const &level = getLevel(depth);
         std::vector<CornerRow> rows(std::size_t(level.numCorners));
         for (QuadCorner const &quad : level.quadCorners) {
-            QuadRow const row = FarExt::internal::FindQuadRow(level.numHexagonalSteps, quad.flags);
-            rows[std::size_t(quad.corner)] = {row.position, row.isBackwards};
+            // Lines are infinitely sharp.
+            QuadRow row = FarExt::internal::FindLineQuadRow(level.numHexagonalSteps, quad.flags);
+            if (row.share == 0) {
+                row = FarExt::internal::FindQuadRow(level.numHexagonalSteps, quad.flags);
+            }
+            rows[std::size_t(quad.corner)] = {row.share > 0 ? row.position : -1, row.isBackwards,
+                                              FarExt::internal::IsOnQuadLine(quad.flags)};
         }
         return rows;
     }
@@ -268,13 +299,23 @@ private:
         CornerRow const row =
             _rows[std::size_t(depth)][std::size_t(level.faceFirstCorner[std::size_t(face)] + i)];
         double const *weights = nullptr;
-        if (size == kQuad && depth >= 1 && depth <= kNumInQuads && !level.IsHalfFace(face)) {
-            weights = masks.inQuads[depth - 1];
-        } else if (row.position >= 0 && masks.rows[std::size_t(row.position)].HasMask()) {
+        if (row.position >= 0 && masks.rows[std::size_t(row.position)].HasMask()) {
             weights = masks.rows[std::size_t(row.position)].weights;
+        } else if (size == kQuad && depth >= 1 && depth <= kNumInQuads && !level.IsHalfFace(face)) {
+            weights = masks.inQuads[depth - 1];
         }
         if (!weights) {
             return _rules[std::size_t(depth)].GetFaceRule(face).GetRow(i);
+        }
+        if (size == kHexagon && masks.rows[std::size_t(row.position)].size == kQuad) {
+            // In one half of a hexagon.
+            auto const &half = FarExt::kHexagonHalves[i < kHexagon / 2 ? 1 : 0];
+            int const place = int(std::find(half, half + kQuad, i) - half);
+            std::fill(std::begin(turned), std::end(turned), 0.0);
+            for (int j = 0; j < kQuad; ++j) {
+                turned[half[(place + (row.isBackwards ? kQuad - j : j)) % kQuad]] = weights[j];
+            }
+            return turned;
         }
         for (int j = 0; j < size; ++j) {
             turned[(i + (row.isBackwards ? size - j : j)) % size] = weights[j];
@@ -297,24 +338,47 @@ private:
                 function(false, refinement.GetCornerChildVertex(corner), getWeight(k, corner));
             }
         };
-        bool hasRows = behind > first;
-        double rest = 1;
-        for (int k = first; k < behind && hasRows; ++k) {
+        auto const getRow = [&](int k) -> QuadMasks::Row const * {
             int const position = rows[std::size_t(level.GetVertexCorner(k))].position;
-            hasRows = position >= 0;
-            rest -= hasRows ? masks.rows[std::size_t(position)].ofVertex : 0;
+            return position >= 0 ? &masks.rows[std::size_t(position)] : nullptr;
+        };
+        // Before the first step, others than those beside a line have the weight of all.
+        double const ofOthers = depth == 0 ? 1.0 / (behind - first + 1) : kNone;
+        auto const getOfVertex = [&](int k) {
+            QuadMasks::Row const *const row = getRow(k);
+            return row ? row->ofVertex : ofOthers;
+        };
+        bool hasRows = false;
+        bool hasOthers = false;
+        double rest = 1;
+        double ofNeighbor = kNone;
+        bool isOnLine = true;
+        for (int k = first; k < behind; ++k) {
+            double const ofVertex = getOfVertex(k);
+            hasRows = hasRows || getRow(k);
+            hasOthers = hasOthers || ofVertex < 0;
+            rest -= ofVertex;
+            ofNeighbor = std::max(ofNeighbor, getRow(k) ? getRow(k)->ofNeighbor : kNone);
+            isOnLine = isOnLine && rows[std::size_t(level.GetVertexCorner(k))].isOnLine;
         }
-        if (hasRows) {
+        if (hasRows && !hasOthers) {
             function(true, vert, rest);
-            forEachFace([&](int, int corner) {
-                return masks.rows[std::size_t(rows[std::size_t(corner)].position)].ofVertex;
-            });
+            forEachFace([&](int k, int) { return getOfVertex(k); });
             return;
         }
         auto const rule = _rules[std::size_t(depth)].GetVertexRule(vert);
-        for (int i = 0; i < rule.numSources; ++i) {
-            function(true, rule.sources[i], rule.weights[i]);
+        // The neighbors along a line come first, and keep their ratio.
+        double const largest =
+            rule.numSources > 1 ? std::max(rule.weights[0], rule.weights[rule.numSources - 2]) : 0;
+        double const factor = isOnLine && ofNeighbor >= 0 && largest > 0 ? ofNeighbor / largest : 1;
+        double ofVertex = 1;
+        for (int i = 0; i < rule.numSources - 1; ++i) {
+            function(true, rule.sources[i], factor * rule.weights[i]);
+            ofVertex -= factor * rule.weights[i];
         }
+        bool const isSharp = rule.numSources > 1;
+        function(true, rule.sources[rule.numSources - 1],
+                 isSharp ? ofVertex : rule.weights[rule.numSources - 1]);
         forEachFace([&](int k, int) { return rule.GetFaceWeight(k - first); });
     }
 
@@ -384,7 +448,9 @@ private:
 class QuadMaskSearch::Implementation {
 public:
     Implementation(int numFaces, int level)
-        : _numFaces(numFaces), _shape(MakeVertexDisk(Tiling::Quads, numFaces, kNumRings)),
+        : _numFaces(numFaces),
+          _shape(MakeVertexDisk(Tiling::Quads, numFaces, isOnLine() ? kNumRings + 1 : kNumRings,
+                                isOnLine() ? DiskPart::Half : DiskPart::Whole)),
           _surface(_shape, level) {
         _lifted = Points::Zero(_shape.GetNumVertices(), kNumColumns);
         for (int i = 0; i < _shape.GetNumVertices(); ++i) {
@@ -433,6 +499,9 @@ public:
         double regular[kHexagon];
         FarExt::ComputeFaceVertexMask(FaceMask::Smooth, FarExt::Interpolation::Vertex, kHexagon,
                                       regular);
+        for (int i = kNumRows; i < kNumAllRows && isOnLine(); ++i) {
+            setLineStart(i, masks);
+        }
         for (int i = 0; i < kNumRows; ++i) {
             QuadMasks::Row &row = masks.rows[std::size_t(i)];
             if (kTable[i].numFaces != _numFaces) {
@@ -467,6 +536,9 @@ public:
     Eigen::VectorXd MeasureQuadratics(QuadMasks const &masks) const {
         std::vector<Eigen::Matrix3d> const derivatives =
             _curvatures->Compute(_surface.Refine(masks, _lifted));
+        if (isOnLine()) {
+            return measureBesideLine(derivatives);
+        }
         Eigen::Matrix3d exact;
         exact << 1, 1, 0, 0, 0, 1, 1, -1, 0;
         double bowl = 1;
@@ -534,6 +606,13 @@ public:
         return Eigen::Map<Eigen::VectorXd const>(values.data(), Eigen::Index(values.size()));
     }
 
+    /// How far weights are from where the search begins, so that beside a line no faces become slivers.
+    Eigen::VectorXd MeasureDistance(Eigen::VectorXd const &weights) const {
+        constexpr double kOfDistance = 0.05;
+        return isOnLine() ? Eigen::VectorXd(kOfDistance * (weights - Gather(GetStart())))
+                          : Eigen::VectorXd();
+    }
+
     std::vector<Entry> Judge(QuadMasks const &masks) const {
         std::vector<Entry> entries = {{"quadratics", MeasureQuadratics(masks).norm()}};
         if (isRegular()) {
@@ -543,6 +622,10 @@ public:
                     {"torus of " + std::to_string(numU) + " x " + std::to_string(numV),
                      MeasureTorusUnevenness(refine(torus, masks), numU)});
             }
+            return entries;
+        }
+        if (isOnLine()) {
+            judgeBesideLines(masks, entries);
             return entries;
         }
         constexpr int kMostRegular = 5;
@@ -555,6 +638,22 @@ public:
     }
 
     void Print(QuadMasks const &masks) const {
+        for (int i = kNumRows; i < kNumAllRows && isOnLine(); ++i) {
+            QuadMasks::Row const &row = masks.rows[std::size_t(i)];
+            std::printf("{%d, \"%s\", ", row.size, getLineRow(i).path);
+            for (double weight : {row.ofVertex, row.ofNeighbor}) {
+                if (weight < 0) {
+                    std::printf("kNone, ");
+                } else {
+                    std::printf("%.0f, ", kParts * weight);
+                }
+            }
+            std::printf("{");
+            for (int j = 0; j < row.size; ++j) {
+                std::printf("%s%.0f", j > 0 ? ", " : "", kParts * row.weights[j]);
+            }
+            std::printf("}},\n");
+        }
         for (int i = 0; i < kNumRows; ++i) {
             QuadMasks::Row const &row = masks.rows[std::size_t(i)];
             if (kTable[i].numFaces != _numFaces) {
@@ -578,9 +677,11 @@ public:
         QuadMasks masks = getShippedMasks();
         double *next = weights.data();
         forEachFree(masks, [&](double const *, int size, std::vector<int> const &places, bool) {
-            double const parts = size == kQuad ? kPartsInQuads : kParts;
+            double const parts = isRegular() && size == kQuad ? kPartsInQuads : kParts;
+            // F-vertices with no weight in V' would be none.
+            double const least = isOnLine() && size == 1 ? 1 : 0;
             for (std::size_t i = 0; i < places.size(); ++i, ++next) {
-                *next = std::round(parts * *next) / parts;
+                *next = std::max(least, std::round(parts * *next)) / parts;
             }
         });
         return weights;
@@ -606,6 +707,7 @@ private:
     }
 
     bool isRegular() const { return _numFaces == kNumRegular; }
+    bool isOnLine() const { return _numFaces == kNumOnLine; }
 
     /// Calls function(weights, their number, places of the free ones, whether the mask is symmetric), with the number 1
     /// for the weight of an F-vertex in V'.
@@ -614,11 +716,16 @@ private:
         for (auto const &[position, isSymmetric] : _free) {
             QuadMasks::Row &row = masks.rows[std::size_t(position)];
             if (row.HasMask()) {
-                function(row.weights, kHexagon,
-                         isSymmetric ? std::vector<int>{1, 2, 3} : std::vector<int>{1, 2, 3, 4, 5},
-                         isSymmetric);
+                std::vector<int> places(std::size_t(isSymmetric ? row.size / 2 : row.size - 1));
+                std::iota(places.begin(), places.end(), 1);
+                function(row.weights, row.size, places, isSymmetric);
             }
-            function(&row.ofVertex, 1, {0}, false);
+            if (row.ofVertex >= 0) {
+                function(&row.ofVertex, 1, {0}, false);
+            }
+            if (row.ofNeighbor > 0) { // others stay
+                function(&row.ofNeighbor, 1, {0}, false);
+            }
         }
         for (auto &mask : masks.inQuads) {
             if (isRegular()) {
@@ -642,19 +749,128 @@ private:
     }
 
     void findFree() {
-        std::array<int, kNumRows> isSymmetric;
+        std::array<int, kNumAllRows> isSymmetric;
         isSymmetric.fill(-1);
         _surface.ForEachRow(
             [&](int position, bool symmetric) { isSymmetric[std::size_t(position)] = symmetric; });
-        for (int i = 0; i < kNumRows; ++i) {
-            if (kTable[i].numFaces == _numFaces && isSymmetric[std::size_t(i)] >= 0) {
+        for (int i = 0; i < kNumAllRows; ++i) {
+            bool const isWanted = i >= kNumRows ? isOnLine() : kTable[i].numFaces == _numFaces;
+            if (isWanted && isSymmetric[std::size_t(i)] >= 0) {
                 _free.emplace_back(i, isSymmetric[std::size_t(i)] == 1);
             }
         }
     }
 
+    /// Where the search begins: the row of the same path in other quads, in half faces the mask of all, and V' without
+    /// regard to paths.
+    void setLineStart(int position, QuadMasks &masks) const {
+        QuadMasks::Row &row = masks.rows[std::size_t(position)];
+        std::string const path = getLineRow(position).path;
+        std::string const digits = path.substr(1);
+        auto const *const same =
+            std::find_if(std::begin(kTable), std::end(kTable), [&](TableRow const &other) {
+                return other.numFaces == kNumRegular && digits == other.path;
+            });
+        if (row.size == kHexagon) {
+            std::copy_n(masks.rows[std::size_t(same - kTable)].weights, kHexagon, row.weights);
+        } else if (path.substr(0, 2) == "11") {
+            constexpr int kQ = 2;
+            double half[kQuad][kQuad];
+            FarExt::ComputeHalfFaceVertexMask(FaceMask::Smooth, FarExt::Interpolation::Vertex,
+                                              &half[0][0]);
+            for (int j = 0; j < kQuad; ++j) {
+                row.weights[j] = half[kQ][(kQ + j) % kQuad];
+            }
+        } else {
+            std::copy_n(FarExt::ComputeQuadMask(int(digits.size())).inQuad, kQuad, row.weights);
+        }
+        if (row.ofVertex >= 0) {
+            row.ofVertex = same == std::end(kTable)
+                               ? 1.0 / (1 + kNumRegular)
+                               : masks.rows[std::size_t(same - kTable)].ofVertex;
+        }
+    }
+
+    /// \brief Mean curvature of x^2 and of y^2 is to be even along the line, whose direction is x; less important, all of
+    /// xx, xy and yy are, x^2 and xy are kept, and yy of y^2 rises from 0 at the line to 1 a row from it.
+    Eigen::VectorXd measureBesideLine(std::vector<Eigen::Matrix3d> const &derivatives) const {
+        constexpr double kOfMean = 2;
+        constexpr double kOfOthers = 0.5;
+        constexpr double kOfKept = 0.5;
+        constexpr double kOfTwist = 0.3;
+        constexpr double kOfProfile = 0.2;
+        constexpr int kBins = 16; // to a row
+        // Columns are xx, xy and yy of x^2/2 and of y^2/2.
+        using Squares = Eigen::Matrix<double, 3, 2>;
+        auto const getSquares = [](Eigen::Matrix3d const &of) {
+            Squares squares;
+            squares << (of.col(0) + of.col(1)) / 2, (of.col(0) - of.col(1)) / 2;
+            return squares;
+        };
+        auto const getBin = [this](std::size_t i) { return std::size_t(_distances[i] * kBins); };
+        std::vector<Squares> means(kNumRowsBesideLine * kBins, Squares::Zero());
+        std::vector<double> areas(means.size());
+        for (std::size_t i = 0; i < derivatives.size(); ++i) {
+            means[getBin(i)] += _areas[i] * getSquares(derivatives[i]);
+            areas[getBin(i)] += _areas[i];
+        }
+        std::vector<double> values;
+        for (std::size_t i = 0; i < derivatives.size(); ++i) {
+            double const factor = std::sqrt(_areas[i]);
+            auto const add = [&](double weight, double value) {
+                values.push_back(factor * weight * value);
+            };
+            Squares const squares = getSquares(derivatives[i]);
+            Squares const uneven = squares - means[getBin(i)] / areas[getBin(i)];
+            for (int lift = 0; lift < 2; ++lift) {
+                add(kOfMean, (uneven(0, lift) + uneven(2, lift)) / 2);
+                add(kOfOthers, (uneven(0, lift) - uneven(2, lift)) / 2);
+                add(kOfOthers, squares(1, lift));
+            }
+            add(kOfKept, squares(0, 0) - 1);
+            add(kOfKept, squares(2, 0));
+            add(kOfTwist, derivatives[i](0, 2));
+            add(kOfTwist, derivatives[i](1, 2) - 1);
+            add(kOfTwist, derivatives[i](2, 2));
+            add(kOfProfile, squares(0, 1));
+            add(kOfProfile, squares(2, 1) - std::min(1.0, _distances[i]));
+        }
+        return Eigen::Map<Eigen::VectorXd const>(values.data(), Eigen::Index(values.size()));
+    }
+
+    static void judgeBesideLines(QuadMasks const &masks, std::vector<Entry> &entries) {
+        for (auto const &[numU, numV] : {std::pair(14, 8), std::pair(20, 10), std::pair(9, 6)}) {
+            double const rowWidth = 1.0 / numV;
+            for (bool const isBorder : {false, true}) {
+                Shape const torus = isBorder ? MakeOpenTorus(numU, numV, TorusFaces::Quads)
+                                             : MakeCreasedTorus(numU, numV, TorusFaces::Quads);
+                std::vector<double> const rows =
+                    MeasureTorusStrips(refine(torus, masks), numU, isBorder ? rowWidth : 0,
+                                       rowWidth, kNumRowsBesideLine);
+                for (std::size_t row = 0; row < rows.size(); ++row) {
+                    entries.push_back({std::to_string(numU) + " x " + std::to_string(numV) +
+                                           (isBorder ? " border" : " crease") + ", row " +
+                                           std::to_string(row + 1),
+                                       rows[row]});
+                }
+            }
+        }
+        for (double rowHeight : {1.0, 0.5}) {
+            constexpr int kNumAround = 12;
+            std::vector<double> const quarters =
+                MeasureTube(refine(MakeTube(kNumAround, 8, rowHeight), masks),
+                            GetTubeRowHeight(kNumAround, rowHeight), 8);
+            double most = 0;
+            for (double quarter : quarters) {
+                most = std::max(most, std::abs(quarter - 1));
+            }
+            entries.push_back({"tube", most});
+        }
+    }
+
     void chooseVertices() {
         constexpr double kTolerance = 1e-6;
+        constexpr double kNearLine = 0.03;
         constexpr double kOuter = 1;
         constexpr double kInner = 1.0 / 17;
         constexpr double kOfRings = 0.4; // the rest by area
@@ -670,11 +886,17 @@ private:
             double const angle = std::atan2(position.y(), position.x());
             bool const isInSector =
                 distance > 0 && angle > -kTolerance && angle < kPi / _numFaces + kTolerance;
-            if (isRegular() ? (isInSector || distance == 0) && position.x() < 0.5 + kTolerance
-                            : isInSector && distance > kInner && distance < kOuter) {
+            bool const isBesideLine = position.x() > -kTolerance &&
+                                      position.x() < 0.5 + kTolerance && position.y() > kNearLine &&
+                                      position.y() < 2;
+            if (isOnLine()    ? isBesideLine
+                : isRegular() ? (isInSector || distance == 0) && position.x() < 0.5 + kTolerance
+                              : isInSector && distance > kInner && distance < kOuter) {
                 vertices.push_back(vertex);
+                _distances.push_back(position.y());
                 double const area = areas[std::size_t(vertex)];
-                rings.push_back(isRegular() ? 0 : int(std::floor(-std::log2(distance))));
+                rings.push_back(isRegular() || isOnLine() ? 0
+                                                          : int(std::floor(-std::log2(distance))));
                 ofRings.resize(std::max(ofRings.size(), std::size_t(rings.back()) + 1));
                 ofRings[std::size_t(rings.back())] += area;
                 _areas.push_back(area);
@@ -706,8 +928,9 @@ private:
     Surface _surface;
     Points _lifted;
     std::vector<std::pair<int, bool>>
-        _free;                  // positions in the table, and whether masks are symmetric
-    std::vector<double> _areas; // by chosen vertex; their sum is 1
+        _free;                      // positions in the table, and whether masks are symmetric
+    std::vector<double> _areas;     // by chosen vertex; their sum is 1
+    std::vector<double> _distances; // of those, from a line
     std::unique_ptr<Curvatures> _curvatures;
     std::vector<MeshCenter> _centers; // at the first level with constant masks
 };
@@ -725,11 +948,11 @@ Eigen::VectorXd QuadMaskSearch::GetStart() const {
 
 Eigen::VectorXd QuadMaskSearch::Measure(Eigen::VectorXd const &weights) const {
     QuadMasks const masks = _implementation->Spread(weights);
-    Eigen::VectorXd const parts[] = {_implementation->MeasureQuadratics(masks),
-                                     _implementation->MeasureBounds(masks),
-                                     _implementation->MeasureRest(masks)};
-    Eigen::VectorXd values(parts[0].size() + parts[1].size() + parts[2].size());
-    values << parts[0], parts[1], parts[2];
+    Eigen::VectorXd const parts[] = {
+        _implementation->MeasureQuadratics(masks), _implementation->MeasureBounds(masks),
+        _implementation->MeasureRest(masks), _implementation->MeasureDistance(weights)};
+    Eigen::VectorXd values(parts[0].size() + parts[1].size() + parts[2].size() + parts[3].size());
+    values << parts[0], parts[1], parts[2], parts[3];
     return values;
 }
 

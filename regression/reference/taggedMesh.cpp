@@ -109,6 +109,7 @@ TaggedMesh MakeTaggedMesh(TaggedBase const &base) {
             tags.sharpness = kInfiniteSharpness;
         }
     }
+    setBasePaths(mesh);
     return mesh;
 }
 
@@ -194,6 +195,7 @@ TaggedMesh MakeValueMesh(TaggedMesh const &mesh, std::vector<int> const &valueIn
             vertex.sharpness = kInfiniteSharpness;
         }
     }
+    setBasePaths(result);
     return result;
 }
 

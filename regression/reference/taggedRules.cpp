@@ -180,6 +180,103 @@ std::vector<Fan> findFans(TaggedMesh const &mesh, int vertex) {
     return fans;
 }
 
+namespace {
+
+bool areQuads(TaggedMesh const &mesh, int vertex) {
+    auto const &corners = mesh.vertices[vertex].corners;
+    return std::all_of(corners.begin(), corners.end(),
+                       [&](Side corner) { return mesh.faces[corner.face].vertices.size() == 4; });
+}
+
+void setPathsAround(TaggedMesh &mesh, int v) {
+    TaggedMesh::Vertex const &vertex = mesh.vertices[v];
+    bool isInside = areQuads(mesh, v) && !vertex.isNonManifold;
+    float sharpness = vertex.sharpness;
+    for (Side corner : vertex.corners) {
+        for (Side side : {corner, previousSide(mesh, corner)}) {
+            Edge const &edge = mesh.edges[mesh.faces[side.face].edges[side.place]];
+            isInside = isInside && edge.sides.size() == 2;
+            sharpness = std::max(sharpness, edge.sharpness);
+        }
+    }
+    if (!isInside || isInfinite(sharpness)) {
+        return;
+    }
+    std::size_t const size = vertex.corners.size();
+    bool const hasKind = size >= 3 && size <= 6;
+    for (Side corner : vertex.corners) {
+        QuadPath path;
+        path.steps = hasKind ? std::to_string(size) : "o";
+        path.sharpness = sharpness;
+        mesh.faces[corner.face].pathsOut[corner.place] = path;
+        mesh.faces[corner.face].pathsIn[corner.place] = path;
+    }
+}
+
+/// Whether two quads are on each side of one line through the vertex, which is equally sharp before and behind it.
+bool isRegularOnLine(TaggedMesh const &mesh, int v) {
+    TaggedMesh::Vertex const &vertex = mesh.vertices[v];
+    std::vector<Fan> const fans = findFans(mesh, v);
+    std::vector<SharpEdge> const lines = sharpEdges(mesh, v);
+    if (vertex.isNonManifold || vertex.sharpness > 0 || fans.size() != 1 || lines.size() != 2 ||
+        lines[0].sharpness != lines[1].sharpness || !areQuads(mesh, v) ||
+        vertex.corners.size() != (fans[0].isClosed ? 4 : 2)) {
+        return false;
+    }
+    // Each face has one of the two.
+    return std::all_of(vertex.corners.begin(), vertex.corners.end(), [&](Side corner) {
+        auto const getEdge = [&](Side side) -> Edge const & {
+            return mesh.edges[mesh.faces[side.face].edges[side.place]];
+        };
+        Edge const &out = getEdge(corner);
+        Edge const &in = getEdge(previousSide(mesh, corner));
+        return !out.isFree && !in.isFree && (out.sharpness > 0) != (in.sharpness > 0);
+    });
+}
+
+} // namespace
+
+void setBasePaths(TaggedMesh &mesh) {
+    for (Face &face : mesh.faces) {
+        face.pathsOut.assign(face.vertices.size(), QuadPath());
+        face.pathsIn.assign(face.vertices.size(), QuadPath());
+    }
+    for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
+        setPathsAround(mesh, int(v));
+    }
+    for (Face &face : mesh.faces) {
+        for (int first = 0; first < 4 && face.vertices.size() == 4; ++first) {
+            Edge const &edge = mesh.edges[face.edges[first]];
+            auto const isAbove = [&](int place) {
+                QuadPath const &path = face.pathsOut[place % 4];
+                auto const &corners = mesh.vertices[face.vertices[place % 4]].corners;
+                return path.steps == "4" && path.sharpness <= 0 &&
+                       std::all_of(corners.begin(), corners.end(), [&](Side corner) {
+                           std::vector<int> const &edges = mesh.faces[corner.face].edges;
+                           return std::all_of(edges.begin(), edges.end(), [&](int other) {
+                               float const sharpness = mesh.edges[other].sharpness;
+                               return sharpness <= 0 || sharpness == edge.sharpness;
+                           });
+                       });
+            };
+            if (edge.sharpness <= 0 || !isAbove(first + 2) || !isAbove(first + 3) ||
+                !isRegularOnLine(mesh, face.vertices[first]) ||
+                !isRegularOnLine(mesh, face.vertices[(first + 1) % 4])) {
+                continue;
+            }
+            char const outs[] = {'1', '2', '4', '3'};
+            char const ins[] = {'2', '1', '3', '4'};
+            for (int i = 0; i < 4; ++i) {
+                bool const isOnLine = i < 2;
+                auto const place = std::size_t((first + i) % 4);
+                float const sharpness = isOnLine ? edge.sharpness : 0;
+                face.pathsOut[place] = {"4", sharpness, outs[i], edge.sharpness};
+                face.pathsIn[place] = {"4", sharpness, ins[i], edge.sharpness};
+            }
+        }
+    }
+}
+
 } // namespace TaggedRules
 
 using namespace TaggedRules;

@@ -86,6 +86,7 @@ public:
             _child.edges.push_back(edge);
         }
         connect(_child);
+        setBasePaths(_child);
         return std::move(_child);
     }
 
