@@ -57,11 +57,11 @@ public:
             corners[i] = _level.GetNextCorner(face, corners[i - 1]);
         }
         auto const getVert = [&](int i) { return _level.faceVerts[corners[i]]; };
-        float const sharpness = getSharpness(_level.faceEdges[start]);
-        if (!isOnLine(getVert(0)) || !isOnLine(getVert(1)) || !isAbove(getVert(2), sharpness) ||
-            !isAbove(getVert(3), sharpness)) {
+        if (!isOnLine(getVert(0)) || !isOnLine(getVert(1)) || !isAbove(getVert(2)) ||
+            !isAbove(getVert(3))) {
             return;
         }
+        float const sharpness = getSharpness(_level.faceEdges[start]);
         constexpr LineFlag kOut[kQuad] = {LineFlag::Along, LineFlag::Up, LineFlag::Top,
                                           LineFlag::Down};
         for (int i = 0; i < kQuad; ++i) {
@@ -75,32 +75,16 @@ private:
     static constexpr int kQuad = 4;
 
     float getSharpness(Index edge) const {
-        return _level.edgeFaces[edge][1] == kSharpBoundaryA ? Crease::SHARPNESS_INFINITE
-                                                            : _level.GetEdgeSharpness(edge);
+        return _level.IsBoundary(edge) ? Crease::SHARPNESS_INFINITE : _level.GetEdgeSharpness(edge);
     }
-    bool isAbove(Index vert, float sharpness) const;
+    bool isAbove(Index vert) const {
+        QuadFlags const flags = makeBaseFlags(_level, vert);
+        return flags.out == MakeQuadFlag(kQuad) && flags.sharpness == 0;
+    }
     bool isOnLine(Index vert) const;
 
     Level const &_level;
 };
-
-// Whether the vertex is smooth, with four quads, at which lines are that sharp, if there are any.
-bool LineQuadFinder::isAbove(Index vert, float sharpness) const {
-    QuadFlags const flags = makeBaseFlags(_level, vert);
-    if (flags.out != MakeQuadFlag(kQuad) || flags.sharpness > 0) {
-        return false;
-    }
-    for (Index face : _level.GetVertexFaces(vert)) {
-        Index const first = _level.faceFirstCorner[face];
-        for (Index corner = first; corner < first + kQuad; ++corner) {
-            float const ofEdge = getSharpness(_level.faceEdges[corner]);
-            if (Crease::IsSharp(ofEdge) && ofEdge != sharpness) {
-                return false;
-            }
-        }
-    }
-    return true;
-}
 
 // Whether the vertex has two quads on each side of one line, which is as sharp before it as behind it.
 bool LineQuadFinder::isOnLine(Index vert) const {

@@ -10,8 +10,7 @@ namespace OpenSubdivHex::FarExt::internal {
 /// sharp lines, which have masks of their own with FaceMask::Smooth.
 ///
 /// The quad has an edge on the line.  The vertices of that edge have two quads on each side of the line, which is smooth
-/// and as sharp before them as behind them.  The other two are smooth and have four quads, whose edges are smooth or as
-/// sharp.
+/// and as sharp before them as behind them; the other two vertices of the quad have four quads and nothing sharp.
 void FindLineQuads(Level &level);
 
 /// \brief Fills quadCorners of \p level, the child of \p refinement, from the parent's: with the paths by which the

@@ -42,7 +42,6 @@ constexpr int kQuad = 4;
 constexpr int kHexagon = 6;
 constexpr int kNumRegular = 4; // faces at a vertex
 constexpr int kNumOnLine = 2;
-constexpr int kNumRowsBesideLine = 2; // of quads, that surfaces are judged at
 constexpr int kNumInQuads = FarExt::kNumStepsToConstantMasks - 1;
 constexpr double kParts = 4096;
 constexpr double kPartsInQuads = 256;
@@ -606,13 +605,6 @@ public:
         return Eigen::Map<Eigen::VectorXd const>(values.data(), Eigen::Index(values.size()));
     }
 
-    /// How far weights are from where the search begins, so that beside a line no faces become slivers.
-    Eigen::VectorXd MeasureDistance(Eigen::VectorXd const &weights) const {
-        constexpr double kOfDistance = 0.05;
-        return isOnLine() ? Eigen::VectorXd(kOfDistance * (weights - Gather(GetStart())))
-                          : Eigen::VectorXd();
-    }
-
     std::vector<Entry> Judge(QuadMasks const &masks) const {
         std::vector<Entry> entries = {{"quadratics", MeasureQuadratics(masks).norm()}};
         if (isRegular()) {
@@ -791,49 +783,38 @@ private:
         }
     }
 
-    /// \brief Mean curvature of x^2 and of y^2 is to be even along the line, whose direction is x; less important, all of
-    /// xx, xy and yy are, x^2 and xy are kept, and yy of y^2 rises from 0 at the line to 1 a row from it.
+    /// x^2 and xy are to be kept, and what y^2 becomes is to be even along the line.
     Eigen::VectorXd measureBesideLine(std::vector<Eigen::Matrix3d> const &derivatives) const {
-        constexpr double kOfMean = 2;
-        constexpr double kOfOthers = 0.5;
-        constexpr double kOfKept = 0.5;
-        constexpr double kOfTwist = 0.3;
-        constexpr double kOfProfile = 0.2;
+        constexpr double kOfProfile = 0.5;
         constexpr int kBins = 16; // to a row
-        // Columns are xx, xy and yy of x^2/2 and of y^2/2.
-        using Squares = Eigen::Matrix<double, 3, 2>;
+        // By bin, of xx, xy and yy of y^2/2 and of x^2/2.
+        std::vector<Eigen::Matrix<double, 3, 2>> means(2 * kBins,
+                                                       Eigen::Matrix<double, 3, 2>::Zero());
+        std::vector<double> areas(2 * kBins);
         auto const getSquares = [](Eigen::Matrix3d const &of) {
-            Squares squares;
+            Eigen::Matrix<double, 3, 2> squares;
             squares << (of.col(0) + of.col(1)) / 2, (of.col(0) - of.col(1)) / 2;
             return squares;
         };
         auto const getBin = [this](std::size_t i) { return std::size_t(_distances[i] * kBins); };
-        std::vector<Squares> means(kNumRowsBesideLine * kBins, Squares::Zero());
-        std::vector<double> areas(means.size());
         for (std::size_t i = 0; i < derivatives.size(); ++i) {
             means[getBin(i)] += _areas[i] * getSquares(derivatives[i]);
             areas[getBin(i)] += _areas[i];
         }
         std::vector<double> values;
         for (std::size_t i = 0; i < derivatives.size(); ++i) {
+            Eigen::Matrix<double, 3, 2> const squares = getSquares(derivatives[i]);
+            Eigen::Matrix<double, 3, 2> const uneven =
+                squares - means[getBin(i)] / areas[getBin(i)];
             double const factor = std::sqrt(_areas[i]);
-            auto const add = [&](double weight, double value) {
-                values.push_back(factor * weight * value);
-            };
-            Squares const squares = getSquares(derivatives[i]);
-            Squares const uneven = squares - means[getBin(i)] / areas[getBin(i)];
-            for (int lift = 0; lift < 2; ++lift) {
-                add(kOfMean, (uneven(0, lift) + uneven(2, lift)) / 2);
-                add(kOfOthers, (uneven(0, lift) - uneven(2, lift)) / 2);
-                add(kOfOthers, squares(1, lift));
+            for (double const value :
+                 {uneven(0, 0), uneven(1, 0), uneven(2, 0), kOfProfile * (squares(0, 0) - 1),
+                  kOfProfile * squares(2, 0), derivatives[i](0, 2), derivatives[i](1, 2) - 1,
+                  derivatives[i](2, 2), uneven(0, 1), squares(1, 1), uneven(2, 1),
+                  kOfProfile * squares(0, 1),
+                  kOfProfile * (squares(2, 1) - std::min(1.0, _distances[i]))}) {
+                values.push_back(factor * value);
             }
-            add(kOfKept, squares(0, 0) - 1);
-            add(kOfKept, squares(2, 0));
-            add(kOfTwist, derivatives[i](0, 2));
-            add(kOfTwist, derivatives[i](1, 2) - 1);
-            add(kOfTwist, derivatives[i](2, 2));
-            add(kOfProfile, squares(0, 1));
-            add(kOfProfile, squares(2, 1) - std::min(1.0, _distances[i]));
         }
         return Eigen::Map<Eigen::VectorXd const>(values.data(), Eigen::Index(values.size()));
     }
@@ -844,9 +825,8 @@ private:
             for (bool const isBorder : {false, true}) {
                 Shape const torus = isBorder ? MakeOpenTorus(numU, numV, TorusFaces::Quads)
                                              : MakeCreasedTorus(numU, numV, TorusFaces::Quads);
-                std::vector<double> const rows =
-                    MeasureTorusStrips(refine(torus, masks), numU, isBorder ? rowWidth : 0,
-                                       rowWidth, kNumRowsBesideLine);
+                std::vector<double> const rows = MeasureTorusStrips(
+                    refine(torus, masks), numU, isBorder ? rowWidth : 0, rowWidth, 2);
                 for (std::size_t row = 0; row < rows.size(); ++row) {
                     entries.push_back({std::to_string(numU) + " x " + std::to_string(numV) +
                                            (isBorder ? " border" : " crease") + ", row " +
@@ -948,11 +928,11 @@ Eigen::VectorXd QuadMaskSearch::GetStart() const {
 
 Eigen::VectorXd QuadMaskSearch::Measure(Eigen::VectorXd const &weights) const {
     QuadMasks const masks = _implementation->Spread(weights);
-    Eigen::VectorXd const parts[] = {
-        _implementation->MeasureQuadratics(masks), _implementation->MeasureBounds(masks),
-        _implementation->MeasureRest(masks), _implementation->MeasureDistance(weights)};
-    Eigen::VectorXd values(parts[0].size() + parts[1].size() + parts[2].size() + parts[3].size());
-    values << parts[0], parts[1], parts[2], parts[3];
+    Eigen::VectorXd const parts[] = {_implementation->MeasureQuadratics(masks),
+                                     _implementation->MeasureBounds(masks),
+                                     _implementation->MeasureRest(masks)};
+    Eigen::VectorXd values(parts[0].size() + parts[1].size() + parts[2].size());
+    values << parts[0], parts[1], parts[2];
     return values;
 }
 

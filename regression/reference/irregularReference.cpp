@@ -8,7 +8,6 @@
 #include <complex>
 #include <fstream>
 #include <map>
-#include <numeric>
 #include <sstream>
 #include <stdexcept>
 #include <string>
@@ -277,19 +276,6 @@ std::string rowOfPath(QuadPath const &quadPath) {
 
 } // namespace
 
-QuadPath QuadPath::Append(char digit) const {
-    constexpr float kInfinite = 10;
-    constexpr std::size_t kNumStepsInRow = 3;
-    if (IsEmpty()) {
-        return {};
-    }
-    auto const less = [](float value) {
-        return value >= kInfinite ? value : std::max(0.0f, value - 1);
-    };
-    bool const leavesRow = steps.size() >= kNumStepsInRow; // with the vertex
-    return {steps + digit, less(sharpness), leavesRow ? ' ' : inRow, leavesRow ? 0 : less(ofLine)};
-}
-
 QuadPath Shorten(QuadPath const &path) {
     std::string const row = rowOfPath(path);
     if (path.steps.size() <= 4) {
@@ -297,7 +283,7 @@ QuadPath Shorten(QuadPath const &path) {
     }
     return row.empty() ? QuadPath()
                        : QuadPath{path.steps.substr(0, 1) + row[0] + row[0] + row.substr(2),
-                                  path.sharpness, ' ', 0};
+                                  path.sharpness};
 }
 
 namespace {
@@ -352,89 +338,6 @@ std::optional<Point> NewPointByPath(std::vector<Point> const &face, int i, QuadP
 std::optional<double> WeightByPath(QuadPath const &out, QuadPath const &in) {
     PathRow const *const row = findRow(out, in);
     return row ? std::optional<double>(row->ofVertex) : std::nullopt;
-}
-
-namespace {
-
-struct LineRow {
-    std::optional<double> ofVertex;
-    std::optional<double> ofNeighbor;
-    std::vector<double> weights;
-};
-
-std::map<std::string, LineRow> readLineRows() {
-    constexpr double kParts = 4096;
-    std::ifstream file(REFERENCE_QUAD_LINE_ROWS);
-    std::map<std::string, LineRow> rows;
-    for (std::string line; std::getline(file, line);) {
-        std::istringstream words(line);
-        std::size_t size = 0;
-        std::string path;
-        char kind = 0;
-        double part = 0;
-        if (line[0] == '#' || !(words >> size >> path >> kind >> part)) {
-            continue;
-        }
-        LineRow &row = rows[path];
-        (kind == 'l' ? row.ofNeighbor : row.ofVertex) = part / kParts;
-        while (words >> part) {
-            row.weights.push_back(part / kParts);
-        }
-        if (row.weights.size() != size) {
-            throw std::runtime_error("Row " + path +
-                                     " of " REFERENCE_QUAD_LINE_ROWS
-                                     " has not as many weights as its face has vertices");
-        }
-    }
-    if (rows.empty()) {
-        throw std::runtime_error("There are no rows in " REFERENCE_QUAD_LINE_ROWS);
-    }
-    return rows;
-}
-
-std::string nameInRow(QuadPath const &path) { return path.inRow + path.steps.substr(1); }
-
-/// Null where one of the paths is not in the first row.
-LineRow const *findLineRow(QuadPath const &out, QuadPath const &in) {
-    static std::map<std::string, LineRow> const rows = readLineRows();
-    if (!out.IsInRow() || !in.IsInRow() || out.GetShareOfLine() == 0) {
-        return nullptr;
-    }
-    auto const found = rows.find(std::min(nameInRow(out), nameInRow(in)));
-    return found != rows.end() ? &found->second : nullptr;
-}
-
-} // namespace
-
-std::optional<Point> NewPointBesideLine(std::vector<Point> const &face, int i, QuadPath const &out,
-                                        QuadPath const &in) {
-    LineRow const *const row = findLineRow(out, in);
-    if (!row) {
-        return {};
-    }
-    int const size = int(row->weights.size());
-    bool const isBackwards = nameInRow(in) < nameInRow(out);
-    std::vector<int> places(std::size_t(size), 0);
-    std::iota(places.begin(), places.end(), 0);
-    if (face.size() > row->weights.size()) { // half of a hexagon
-        places = i < 3 ? std::vector<int>{3, 0, 1, 2} : std::vector<int>{0, 3, 4, 5};
-    }
-    int const place = int(std::find(places.begin(), places.end(), i) - places.begin());
-    Point sum = Point::Zero(face[0].size());
-    for (int j = 0; j < size; ++j) {
-        sum += row->weights[j] * face[places[(place + (isBackwards ? size - j : j)) % size]];
-    }
-    return sum;
-}
-
-std::optional<double> WeightBesideLine(QuadPath const &out, QuadPath const &in) {
-    LineRow const *const row = findLineRow(out, in);
-    return row ? row->ofVertex : std::nullopt;
-}
-
-std::optional<double> NeighborWeightOnLine(QuadPath const &out, QuadPath const &in) {
-    LineRow const *const row = findLineRow(out, in);
-    return row ? row->ofNeighbor : std::nullopt;
 }
 
 Point NewPointOfQuad(int numSteps, std::vector<Point> const &face, int i) {

@@ -65,19 +65,13 @@ NewPointBesideQuad(int numSteps, std::vector<Eigen::RowVectorXd> const &face, in
 struct QuadPath {
     std::string steps;
     float sharpness = 0; ///< of the sharpest at the quad's vertex, less one for each step
-    /// In the first row of quads on a line, for three steps: the edge, 1 along the line, 2 up from it, 3 down to it, 4 along
-    /// the top; else a blank.
-    char inRow = ' ';
-    float ofLine = 0; ///< the sharpness of the line, less one for each step
 
     bool IsEmpty() const { return steps.empty(); }
-    bool IsInRow() const { return inRow != ' '; }
-    /// At a vertex on the line.
-    bool IsOnLine() const { return inRow == '1' || inRow == '2'; }
     double GetShare() const { return sharpness < 1 ? 1 - double(sharpness) : 0; }
-    double GetShareOfLine() const { return ofLine < 1 ? double(ofLine) : 1; }
     /// After another step.
-    QuadPath Append(char digit) const;
+    QuadPath Append(char digit) const {
+        return IsEmpty() ? *this : QuadPath{steps + digit, sharpness > 1 ? sharpness - 1 : 0};
+    }
 };
 
 /// A path of at most four steps that has the same rows, now and after any more steps; empty where it has none any more.
@@ -88,18 +82,6 @@ std::optional<Eigen::RowVectorXd> NewPointByPath(std::vector<Eigen::RowVectorXd>
                                                  QuadPath const &out, QuadPath const &in);
 /// The weight of that point, or of one in a quad, where the corner's vertex is moved; nothing where they have no rule.
 std::optional<double> WeightByPath(QuadPath const &out, QuadPath const &in);
-
-/// @name The same in the first row of quads on a line
-/// A half face is its vertices from the one on the line that its long edge begins at.
-/// @{
-std::optional<Eigen::RowVectorXd> NewPointBesideLine(std::vector<Eigen::RowVectorXd> const &face,
-                                                     int i, QuadPath const &out,
-                                                     QuadPath const &in);
-std::optional<double> WeightBesideLine(QuadPath const &out, QuadPath const &in);
-/// The weight of each neighbor along the line, where the corner's vertex is on it; of one at the far end of a long edge half
-/// of it, if the other edge is not long.
-std::optional<double> NeighborWeightOnLine(QuadPath const &out, QuadPath const &in);
-/// @}
 
 /// The new point beside corner \p i of a quad.
 Eigen::RowVectorXd NewPointOfQuad(int numSteps, std::vector<Eigen::RowVectorXd> const &face, int i);

@@ -128,8 +128,6 @@ LimitReference::Piece LimitReference::cutOut(TaggedMesh const &mesh, int vertex,
                 signature.push_back(int(path.steps.size()));
                 signature.insert(signature.end(), path.steps.begin(), path.steps.end());
                 signature.push_back(bitsOf(path.sharpness));
-                signature.push_back(path.inRow);
-                signature.push_back(bitsOf(path.ofLine));
             }
         }
         part.faces.push_back(std::move(copy));

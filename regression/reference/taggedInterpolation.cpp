@@ -446,16 +446,7 @@ private:
         auto const [out, in] = pathsOf(corner);
         std::optional<Point> const byPath =
             hexagon.size() == 6 ? NewPointByPath(pointsOf(hexagon), place, out, in) : std::nullopt;
-        Point const plain =
-            byPath ? Point(out.GetShare() * *byPath + (1 - out.GetShare()) * other) : other;
-        std::optional<Point> const ofLine =
-            NewPointBesideLine(pointsOf(_mesh.faces[corner.face].vertices), corner.place, out, in);
-        if (!ofLine) {
-            return plain;
-        }
-        // Paths have what the line leaves.
-        double const share = out.GetShareOfLine();
-        return share * *ofLine + (1 - share) * (byPath && out.GetShare() > 0 ? *byPath : plain);
+        return byPath ? Point(out.GetShare() * *byPath + (1 - out.GetShare()) * other) : other;
     }
 
     /// A moved vertex, likewise: where the paths of all corners tell the weights of their new points.
@@ -467,56 +458,19 @@ private:
         Point moved = old;
         std::set<int> around;
         double share = 0;
-        bool isBesideLine = false;
-        auto const &corners = _mesh.vertices[v].corners;
-        for (Side corner : corners) {
+        for (Side corner : _mesh.vertices[v].corners) {
             int const point = _child.fVertices[corner.face][corner.place];
             auto const [out, in] = pathsOf(corner);
-            std::optional<double> weight = WeightByPath(out, in);
-            if (!weight && _mesh.numHexagonalSteps == 0) {
-                weight = 1 / (1 + double(corners.size()));
-            }
+            std::optional<double> const weight = WeightByPath(out, in);
             if (!weight) {
                 return other;
-            }
-            share = out.GetShare();
-            if (std::optional<double> const ofLine = WeightBesideLine(out, in)) {
-                double const shareOfLine = out.GetShareOfLine();
-                weight = shareOfLine * *ofLine + (1 - shareOfLine) * *weight;
-                isBesideLine = true;
             }
             if (around.insert(point).second) {
                 moved += *weight * (_result.row(point) - old);
             }
+            share = out.GetShare();
         }
-        if (isBesideLine) {
-            return moved;
-        }
-        return _mesh.numHexagonalSteps > 0 ? Point(share * moved + (1 - share) * other) : other;
-    }
-
-    /// In first rows of quads alone.
-    std::optional<double> neighborWeightOnLine(int v) const {
-        if (!hasIrregularRules()) {
-            return {};
-        }
-        std::optional<double> weight;
-        for (Side corner : _mesh.vertices[v].corners) {
-            Face const &face = _mesh.faces[corner.face];
-            std::size_t const place = std::size_t(corner.place);
-            QuadPath const &out = face.pathsOut[place];
-            QuadPath const &in = face.pathsIn[place];
-            // A long edge has none.
-            bool const isOutLong = face.isHalf && corner.place == 0;
-            bool const isInLong = face.isHalf && corner.place == 1;
-            if (!(isOutLong || out.IsOnLine()) || !(isInLong || in.IsOnLine())) {
-                return {};
-            }
-            if (std::optional<double> const found = NeighborWeightOnLine(out, in)) {
-                weight = found;
-            }
-        }
-        return weight;
+        return share * moved + (1 - share) * other;
     }
 
     /// The face, or the hexagon whose half it is, V, R, S, W, Q, P; and the corner's place there.
@@ -576,11 +530,6 @@ private:
         Point const vertex = _values.row(v);
         Point const atA = _values.row(a.neighbor);
         Point const atB = _values.row(b.neighbor);
-        if (std::optional<double> const weight = neighborWeightOnLine(v)) {
-            double const ofA = a.isLong && !b.isLong ? *weight / 2 : *weight;
-            double const ofB = b.isLong && !a.isLong ? *weight / 2 : *weight;
-            return (1 - ofA - ofB) * vertex + ofA * atA + ofB * atB;
-        }
         if (a.isLong && b.isLong) {
             return (26 * vertex + 3 * atA + 3 * atB) / 32;
         }

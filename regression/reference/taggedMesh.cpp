@@ -109,7 +109,6 @@ TaggedMesh MakeTaggedMesh(TaggedBase const &base) {
             tags.sharpness = kInfiniteSharpness;
         }
     }
-    setBasePaths(mesh);
     return mesh;
 }
 
@@ -195,7 +194,6 @@ TaggedMesh MakeValueMesh(TaggedMesh const &mesh, std::vector<int> const &valueIn
             vertex.sharpness = kInfiniteSharpness;
         }
     }
-    setBasePaths(result);
     return result;
 }
 

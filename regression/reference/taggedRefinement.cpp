@@ -27,7 +27,7 @@ public:
 
     TaggedMesh Run() {
         makeVertices();
-        findPaths();
+        findBasePaths();
         makeFFaces();
         if (_step.scheme != ReferenceScheme::TriHex) {
             makeEFaces();
@@ -44,7 +44,7 @@ public:
 
 private:
     void makeVertices();
-    void findPaths();
+    void findBasePaths();
     void setPathsOfSide(int face, int start, int end, int endPoint, int startPoint, Side side);
     void makeFFaces();
     void makeEFaces();
@@ -154,13 +154,39 @@ void Refinement::makeVertices() {
 
 QuadPath longer(QuadPath const &path, char digit) { return path.Append(digit); }
 
-/// With places for all corners.
-void Refinement::findPaths() {
+/// Of the parent: those that it has, or those that begin there.
+void Refinement::findBasePaths() {
     for (Face const &face : _parent.faces) {
         _pathsOut.push_back(face.pathsOut);
         _pathsIn.push_back(face.pathsIn);
         _pathsOut.back().resize(face.vertices.size());
         _pathsIn.back().resize(face.vertices.size());
+    }
+    for (std::size_t v = 0; v < _parent.vertices.size(); ++v) {
+        TaggedMesh::Vertex const &vertex = _parent.vertices[v];
+        bool const areQuads =
+            std::all_of(vertex.corners.begin(), vertex.corners.end(), [&](Side corner) {
+                return _parent.faces[corner.face].vertices.size() == 4;
+            });
+        bool isInside = _parent.numHexagonalSteps == 0 && areQuads && !vertex.isNonManifold;
+        float sharpness = vertex.sharpness;
+        for (Side corner : vertex.corners) {
+            for (Side side : {corner, previousSide(_parent, corner)}) {
+                Edge const &edge = _parent.edges[_parent.faces[side.face].edges[side.place]];
+                isInside = isInside && edge.sides.size() == 2;
+                sharpness = std::max(sharpness, edge.sharpness);
+            }
+        }
+        if (!isInside || isInfinite(sharpness)) {
+            continue;
+        }
+        std::size_t const size = vertex.corners.size();
+        bool const hasKind = size >= 3 && size <= 6;
+        for (Side corner : vertex.corners) {
+            QuadPath const path = {hasKind ? std::to_string(size) : "o", sharpness};
+            _pathsOut[corner.face][corner.place] = path;
+            _pathsIn[corner.face][corner.place] = path;
+        }
     }
 }
 
@@ -241,7 +267,9 @@ void Refinement::makeEFaces() {
                         !edge.isFree, std::vector<bool>(4, isHole(side)), origin);
             child.sides.push_back({face, 0});
             _placed.insert({face, 0});
-            setPathsOfSide(face, 0, 1, 2, 3, side);
+            if (edge.sides.size() == 2 && !isInfinite(edge.sharpness)) {
+                setPathsOfSide(face, 0, 1, 2, 3, side);
+            }
         }
         child.isFree = edge.isFree;
         child.line = edge.line;

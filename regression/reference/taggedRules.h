@@ -60,10 +60,6 @@ struct Fan {
 };
 std::vector<Fan> findFans(TaggedMesh const &mesh, int vertex);
 
-/// Gives the corners of quads their paths before the first hexagonal step: around vertices inside the mesh all of whose faces
-/// are quads, with nothing infinitely sharp, and in the first row of quads on a line.
-void setBasePaths(TaggedMesh &mesh);
-
 } // namespace OpenSubdivHex::Regression::TaggedRules
 
 namespace OpenSubdivHex::Regression {

@@ -86,7 +86,6 @@ public:
             _child.edges.push_back(edge);
         }
         connect(_child);
-        setBasePaths(_child);
         return std::move(_child);
     }
 
