@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "quadMaskSearch.h"
 
-#include "besideLines.h"
 #include "evenness.h"
 #include "localSubdivision.h"
 #include "ripple.h"
@@ -41,7 +40,6 @@ using FarExt::internal::RefinementRules;
 constexpr int kQuad = 4;
 constexpr int kHexagon = 6;
 constexpr int kNumRegular = 4; // faces at a vertex
-constexpr int kNumOnLine = 2;
 constexpr int kNumInQuads = FarExt::kNumStepsToConstantMasks - 1;
 constexpr double kParts = 4096;
 constexpr double kPartsInQuads = 256;
@@ -58,44 +56,23 @@ constexpr TableRow kTable[] = {
 };
 constexpr int kNumRows = int(std::size(kTable));
 
-constexpr int kNone = -1;
-struct LineTableRow {
-    int size;
-    char const *path;
-    int ofVertex;
-    int ofNeighbor;
-    int parts[kHexagon];
-};
-constexpr LineTableRow kLineTable[] = {
-#include "far_ext/rules/quadLineRows.inl"
-};
-constexpr int kNumAllRows = kNumRows + int(std::size(kLineTable));
-LineTableRow const &getLineRow(int position) { return kLineTable[position - kNumRows]; }
-
 /// All masks by paths, and those in quads, of which some are searched for.
 struct QuadMasks {
     struct Row {
-        double ofVertex;   // below 0: none
-        double ofNeighbor; // along a line; below 0: none
-        int size;
-        double weights[kHexagon];
+        double ofVertex;
+        double weights[kHexagon]; // of a hexagon
         bool HasMask() const { return weights[0] > 0 || weights[1] > 0; }
     };
-    std::array<Row, kNumAllRows> rows;
+    std::array<Row, kNumRows> rows;
     double inQuads[kNumInQuads][kQuad]; // by level, from 1 on
 };
 
 QuadMasks getShippedMasks() {
     QuadMasks masks;
-    for (int i = 0; i < kNumAllRows; ++i) {
-        bool const isOfLine = i >= kNumRows;
-        QuadMasks::Row &row = masks.rows[std::size_t(i)];
-        row.ofVertex = (isOfLine ? getLineRow(i).ofVertex : kTable[i].ofVertex) / kParts;
-        row.ofNeighbor = (isOfLine ? getLineRow(i).ofNeighbor : kNone) / kParts;
-        row.size = isOfLine ? getLineRow(i).size : kHexagon;
-        auto const &parts = isOfLine ? getLineRow(i).parts : kTable[i].parts;
-        std::transform(parts, parts + kHexagon, row.weights,
-                       [](int part) { return part / kParts; });
+    for (int i = 0; i < kNumRows; ++i) {
+        masks.rows[std::size_t(i)].ofVertex = kTable[i].ofVertex / kParts;
+        std::transform(kTable[i].parts, kTable[i].parts + kHexagon,
+                       masks.rows[std::size_t(i)].weights, [](int part) { return part / kParts; });
     }
     for (int i = 0; i < kNumInQuads; ++i) {
         std::copy_n(FarExt::ComputeQuadMask(i + 1).inQuad, kQuad, masks.inQuads[i]);
@@ -111,13 +88,12 @@ using Points = Eigen::Matrix<double, Eigen::Dynamic, kNumColumns, Eigen::RowMajo
 class Surface {
 public:
     Surface(Shape const &shape, int level) {
-        OpenSubdiv::Sdc::Options options;
-        options.SetVtxBoundaryInterpolation(OpenSubdiv::Sdc::Options::VTX_BOUNDARY_EDGE_ONLY);
-        _refiner = FarExt::TopologyRefinerFactory::Create(ShapeDescriptor(shape).Get(), options,
+        _refiner = FarExt::TopologyRefinerFactory::Create(ShapeDescriptor(shape).Get(),
+                                                          OpenSubdiv::Sdc::Options(),
                                                           {HexSchemeOptions{FaceMask::Smooth}});
-        FarExt::TopologyRefiner::UniformOptions uniform(level);
-        uniform.fullTopologyInLastLevel = true;
-        if (!_refiner || !_refiner->RefineUniform(uniform)) {
+        FarExt::TopologyRefiner::UniformOptions options(level);
+        options.fullTopologyInLastLevel = true;
+        if (!_refiner || !_refiner->RefineUniform(options)) {
             throw std::runtime_error(shape.name + " cannot be refined");
         }
         _mesh = MakeSurfaceLevels(*_refiner, shape).back().mesh;
@@ -266,7 +242,6 @@ private:
     struct CornerRow {
         int position = -1;
         bool isBackwards = false;
-        bool isOnLine = false;
     };
 
     FarExt::internal::MeshLevels const &getLevels() const { return _refiner->GetHierarchy().mesh; }
@@ -280,13 +255,8 @@ private:
         Level const &level = getLevel(depth);
         std::vector<CornerRow> rows(std::size_t(level.numCorners));
         for (QuadCorner const &quad : level.quadCorners) {
-            // Lines are infinitely sharp.
-            QuadRow row = FarExt::internal::FindLineQuadRow(level.numHexagonalSteps, quad.flags);
-            if (row.share == 0) {
-                row = FarExt::internal::FindQuadRow(level.numHexagonalSteps, quad.flags);
-            }
-            rows[std::size_t(quad.corner)] = {row.share > 0 ? row.position : -1, row.isBackwards,
-                                              FarExt::internal::IsOnQuadLine(quad.flags)};
+            QuadRow const row = FarExt::internal::FindQuadRow(level.numHexagonalSteps, quad.flags);
+            rows[std::size_t(quad.corner)] = {row.position, row.isBackwards};
         }
         return rows;
     }
@@ -298,23 +268,13 @@ private:
         CornerRow const row =
             _rows[std::size_t(depth)][std::size_t(level.faceFirstCorner[std::size_t(face)] + i)];
         double const *weights = nullptr;
-        if (row.position >= 0 && masks.rows[std::size_t(row.position)].HasMask()) {
-            weights = masks.rows[std::size_t(row.position)].weights;
-        } else if (size == kQuad && depth >= 1 && depth <= kNumInQuads && !level.IsHalfFace(face)) {
+        if (size == kQuad && depth >= 1 && depth <= kNumInQuads && !level.IsHalfFace(face)) {
             weights = masks.inQuads[depth - 1];
+        } else if (row.position >= 0 && masks.rows[std::size_t(row.position)].HasMask()) {
+            weights = masks.rows[std::size_t(row.position)].weights;
         }
         if (!weights) {
             return _rules[std::size_t(depth)].GetFaceRule(face).GetRow(i);
-        }
-        if (size == kHexagon && masks.rows[std::size_t(row.position)].size == kQuad) {
-            // In one half of a hexagon.
-            auto const &half = FarExt::kHexagonHalves[i < kHexagon / 2 ? 1 : 0];
-            int const place = int(std::find(half, half + kQuad, i) - half);
-            std::fill(std::begin(turned), std::end(turned), 0.0);
-            for (int j = 0; j < kQuad; ++j) {
-                turned[half[(place + (row.isBackwards ? kQuad - j : j)) % kQuad]] = weights[j];
-            }
-            return turned;
         }
         for (int j = 0; j < size; ++j) {
             turned[(i + (row.isBackwards ? size - j : j)) % size] = weights[j];
@@ -337,47 +297,24 @@ private:
                 function(false, refinement.GetCornerChildVertex(corner), getWeight(k, corner));
             }
         };
-        auto const getRow = [&](int k) -> QuadMasks::Row const * {
-            int const position = rows[std::size_t(level.GetVertexCorner(k))].position;
-            return position >= 0 ? &masks.rows[std::size_t(position)] : nullptr;
-        };
-        // Before the first step, others than those beside a line have the weight of all.
-        double const ofOthers = depth == 0 ? 1.0 / (behind - first + 1) : kNone;
-        auto const getOfVertex = [&](int k) {
-            QuadMasks::Row const *const row = getRow(k);
-            return row ? row->ofVertex : ofOthers;
-        };
-        bool hasRows = false;
-        bool hasOthers = false;
+        bool hasRows = behind > first;
         double rest = 1;
-        double ofNeighbor = kNone;
-        bool isOnLine = true;
-        for (int k = first; k < behind; ++k) {
-            double const ofVertex = getOfVertex(k);
-            hasRows = hasRows || getRow(k);
-            hasOthers = hasOthers || ofVertex < 0;
-            rest -= ofVertex;
-            ofNeighbor = std::max(ofNeighbor, getRow(k) ? getRow(k)->ofNeighbor : kNone);
-            isOnLine = isOnLine && rows[std::size_t(level.GetVertexCorner(k))].isOnLine;
+        for (int k = first; k < behind && hasRows; ++k) {
+            int const position = rows[std::size_t(level.GetVertexCorner(k))].position;
+            hasRows = position >= 0;
+            rest -= hasRows ? masks.rows[std::size_t(position)].ofVertex : 0;
         }
-        if (hasRows && !hasOthers) {
+        if (hasRows) {
             function(true, vert, rest);
-            forEachFace([&](int k, int) { return getOfVertex(k); });
+            forEachFace([&](int, int corner) {
+                return masks.rows[std::size_t(rows[std::size_t(corner)].position)].ofVertex;
+            });
             return;
         }
         auto const rule = _rules[std::size_t(depth)].GetVertexRule(vert);
-        // The neighbors along a line come first, and keep their ratio.
-        double const largest =
-            rule.numSources > 1 ? std::max(rule.weights[0], rule.weights[rule.numSources - 2]) : 0;
-        double const factor = isOnLine && ofNeighbor >= 0 && largest > 0 ? ofNeighbor / largest : 1;
-        double ofVertex = 1;
-        for (int i = 0; i < rule.numSources - 1; ++i) {
-            function(true, rule.sources[i], factor * rule.weights[i]);
-            ofVertex -= factor * rule.weights[i];
+        for (int i = 0; i < rule.numSources; ++i) {
+            function(true, rule.sources[i], rule.weights[i]);
         }
-        bool const isSharp = rule.numSources > 1;
-        function(true, rule.sources[rule.numSources - 1],
-                 isSharp ? ofVertex : rule.weights[rule.numSources - 1]);
         forEachFace([&](int k, int) { return rule.GetFaceWeight(k - first); });
     }
 
@@ -447,9 +384,7 @@ private:
 class QuadMaskSearch::Implementation {
 public:
     Implementation(int numFaces, int level)
-        : _numFaces(numFaces),
-          _shape(MakeVertexDisk(Tiling::Quads, numFaces, isOnLine() ? kNumRings + 1 : kNumRings,
-                                isOnLine() ? DiskPart::Half : DiskPart::Whole)),
+        : _numFaces(numFaces), _shape(MakeVertexDisk(Tiling::Quads, numFaces, kNumRings)),
           _surface(_shape, level) {
         _lifted = Points::Zero(_shape.GetNumVertices(), kNumColumns);
         for (int i = 0; i < _shape.GetNumVertices(); ++i) {
@@ -498,9 +433,6 @@ public:
         double regular[kHexagon];
         FarExt::ComputeFaceVertexMask(FaceMask::Smooth, FarExt::Interpolation::Vertex, kHexagon,
                                       regular);
-        for (int i = kNumRows; i < kNumAllRows && isOnLine(); ++i) {
-            setLineStart(i, masks);
-        }
         for (int i = 0; i < kNumRows; ++i) {
             QuadMasks::Row &row = masks.rows[std::size_t(i)];
             if (kTable[i].numFaces != _numFaces) {
@@ -535,9 +467,6 @@ public:
     Eigen::VectorXd MeasureQuadratics(QuadMasks const &masks) const {
         std::vector<Eigen::Matrix3d> const derivatives =
             _curvatures->Compute(_surface.Refine(masks, _lifted));
-        if (isOnLine()) {
-            return measureBesideLine(derivatives);
-        }
         Eigen::Matrix3d exact;
         exact << 1, 1, 0, 0, 0, 1, 1, -1, 0;
         double bowl = 1;
@@ -616,10 +545,6 @@ public:
             }
             return entries;
         }
-        if (isOnLine()) {
-            judgeBesideLines(masks, entries);
-            return entries;
-        }
         constexpr int kMostRegular = 5;
         Shape const shape = _numFaces > kMostRegular
                                 ? MakeSphereHull(60, 200)
@@ -630,22 +555,6 @@ public:
     }
 
     void Print(QuadMasks const &masks) const {
-        for (int i = kNumRows; i < kNumAllRows && isOnLine(); ++i) {
-            QuadMasks::Row const &row = masks.rows[std::size_t(i)];
-            std::printf("{%d, \"%s\", ", row.size, getLineRow(i).path);
-            for (double weight : {row.ofVertex, row.ofNeighbor}) {
-                if (weight < 0) {
-                    std::printf("kNone, ");
-                } else {
-                    std::printf("%.0f, ", kParts * weight);
-                }
-            }
-            std::printf("{");
-            for (int j = 0; j < row.size; ++j) {
-                std::printf("%s%.0f", j > 0 ? ", " : "", kParts * row.weights[j]);
-            }
-            std::printf("}},\n");
-        }
         for (int i = 0; i < kNumRows; ++i) {
             QuadMasks::Row const &row = masks.rows[std::size_t(i)];
             if (kTable[i].numFaces != _numFaces) {
@@ -669,11 +578,9 @@ public:
         QuadMasks masks = getShippedMasks();
         double *next = weights.data();
         forEachFree(masks, [&](double const *, int size, std::vector<int> const &places, bool) {
-            double const parts = isRegular() && size == kQuad ? kPartsInQuads : kParts;
-            // F-vertices with no weight in V' would be none.
-            double const least = isOnLine() && size == 1 ? 1 : 0;
+            double const parts = size == kQuad ? kPartsInQuads : kParts;
             for (std::size_t i = 0; i < places.size(); ++i, ++next) {
-                *next = std::max(least, std::round(parts * *next)) / parts;
+                *next = std::round(parts * *next) / parts;
             }
         });
         return weights;
@@ -699,7 +606,6 @@ private:
     }
 
     bool isRegular() const { return _numFaces == kNumRegular; }
-    bool isOnLine() const { return _numFaces == kNumOnLine; }
 
     /// Calls function(weights, their number, places of the free ones, whether the mask is symmetric), with the number 1
     /// for the weight of an F-vertex in V'.
@@ -708,16 +614,11 @@ private:
         for (auto const &[position, isSymmetric] : _free) {
             QuadMasks::Row &row = masks.rows[std::size_t(position)];
             if (row.HasMask()) {
-                std::vector<int> places(std::size_t(isSymmetric ? row.size / 2 : row.size - 1));
-                std::iota(places.begin(), places.end(), 1);
-                function(row.weights, row.size, places, isSymmetric);
+                function(row.weights, kHexagon,
+                         isSymmetric ? std::vector<int>{1, 2, 3} : std::vector<int>{1, 2, 3, 4, 5},
+                         isSymmetric);
             }
-            if (row.ofVertex >= 0) {
-                function(&row.ofVertex, 1, {0}, false);
-            }
-            if (row.ofNeighbor > 0) { // others stay
-                function(&row.ofNeighbor, 1, {0}, false);
-            }
+            function(&row.ofVertex, 1, {0}, false);
         }
         for (auto &mask : masks.inQuads) {
             if (isRegular()) {
@@ -741,116 +642,19 @@ private:
     }
 
     void findFree() {
-        std::array<int, kNumAllRows> isSymmetric;
+        std::array<int, kNumRows> isSymmetric;
         isSymmetric.fill(-1);
         _surface.ForEachRow(
             [&](int position, bool symmetric) { isSymmetric[std::size_t(position)] = symmetric; });
-        for (int i = 0; i < kNumAllRows; ++i) {
-            bool const isWanted = i >= kNumRows ? isOnLine() : kTable[i].numFaces == _numFaces;
-            if (isWanted && isSymmetric[std::size_t(i)] >= 0) {
+        for (int i = 0; i < kNumRows; ++i) {
+            if (kTable[i].numFaces == _numFaces && isSymmetric[std::size_t(i)] >= 0) {
                 _free.emplace_back(i, isSymmetric[std::size_t(i)] == 1);
             }
         }
     }
 
-    /// Where the search begins: the row of the same path in other quads, in half faces the mask of all, and V' without
-    /// regard to paths.
-    void setLineStart(int position, QuadMasks &masks) const {
-        QuadMasks::Row &row = masks.rows[std::size_t(position)];
-        std::string const path = getLineRow(position).path;
-        std::string const digits = path.substr(1);
-        auto const *const same =
-            std::find_if(std::begin(kTable), std::end(kTable), [&](TableRow const &other) {
-                return other.numFaces == kNumRegular && digits == other.path;
-            });
-        if (row.size == kHexagon) {
-            std::copy_n(masks.rows[std::size_t(same - kTable)].weights, kHexagon, row.weights);
-        } else if (path.substr(0, 2) == "11") {
-            constexpr int kQ = 2;
-            double half[kQuad][kQuad];
-            FarExt::ComputeHalfFaceVertexMask(FaceMask::Smooth, FarExt::Interpolation::Vertex,
-                                              &half[0][0]);
-            for (int j = 0; j < kQuad; ++j) {
-                row.weights[j] = half[kQ][(kQ + j) % kQuad];
-            }
-        } else {
-            std::copy_n(FarExt::ComputeQuadMask(int(digits.size())).inQuad, kQuad, row.weights);
-        }
-        if (row.ofVertex >= 0) {
-            row.ofVertex = same == std::end(kTable)
-                               ? 1.0 / (1 + kNumRegular)
-                               : masks.rows[std::size_t(same - kTable)].ofVertex;
-        }
-    }
-
-    /// x^2 and xy are to be kept, and what y^2 becomes is to be even along the line.
-    Eigen::VectorXd measureBesideLine(std::vector<Eigen::Matrix3d> const &derivatives) const {
-        constexpr double kOfProfile = 0.5;
-        constexpr int kBins = 16; // to a row
-        // By bin, of xx, xy and yy of y^2/2 and of x^2/2.
-        std::vector<Eigen::Matrix<double, 3, 2>> means(2 * kBins,
-                                                       Eigen::Matrix<double, 3, 2>::Zero());
-        std::vector<double> areas(2 * kBins);
-        auto const getSquares = [](Eigen::Matrix3d const &of) {
-            Eigen::Matrix<double, 3, 2> squares;
-            squares << (of.col(0) + of.col(1)) / 2, (of.col(0) - of.col(1)) / 2;
-            return squares;
-        };
-        auto const getBin = [this](std::size_t i) { return std::size_t(_distances[i] * kBins); };
-        for (std::size_t i = 0; i < derivatives.size(); ++i) {
-            means[getBin(i)] += _areas[i] * getSquares(derivatives[i]);
-            areas[getBin(i)] += _areas[i];
-        }
-        std::vector<double> values;
-        for (std::size_t i = 0; i < derivatives.size(); ++i) {
-            Eigen::Matrix<double, 3, 2> const squares = getSquares(derivatives[i]);
-            Eigen::Matrix<double, 3, 2> const uneven =
-                squares - means[getBin(i)] / areas[getBin(i)];
-            double const factor = std::sqrt(_areas[i]);
-            for (double const value :
-                 {uneven(0, 0), uneven(1, 0), uneven(2, 0), kOfProfile * (squares(0, 0) - 1),
-                  kOfProfile * squares(2, 0), derivatives[i](0, 2), derivatives[i](1, 2) - 1,
-                  derivatives[i](2, 2), uneven(0, 1), squares(1, 1), uneven(2, 1),
-                  kOfProfile * squares(0, 1),
-                  kOfProfile * (squares(2, 1) - std::min(1.0, _distances[i]))}) {
-                values.push_back(factor * value);
-            }
-        }
-        return Eigen::Map<Eigen::VectorXd const>(values.data(), Eigen::Index(values.size()));
-    }
-
-    static void judgeBesideLines(QuadMasks const &masks, std::vector<Entry> &entries) {
-        for (auto const &[numU, numV] : {std::pair(14, 8), std::pair(20, 10), std::pair(9, 6)}) {
-            double const rowWidth = 1.0 / numV;
-            for (bool const isBorder : {false, true}) {
-                Shape const torus = isBorder ? MakeOpenTorus(numU, numV, TorusFaces::Quads)
-                                             : MakeCreasedTorus(numU, numV, TorusFaces::Quads);
-                std::vector<double> const rows = MeasureTorusStrips(
-                    refine(torus, masks), numU, isBorder ? rowWidth : 0, rowWidth, 2);
-                for (std::size_t row = 0; row < rows.size(); ++row) {
-                    entries.push_back({std::to_string(numU) + " x " + std::to_string(numV) +
-                                           (isBorder ? " border" : " crease") + ", row " +
-                                           std::to_string(row + 1),
-                                       rows[row]});
-                }
-            }
-        }
-        for (double rowHeight : {1.0, 0.5}) {
-            constexpr int kNumAround = 12;
-            std::vector<double> const quarters =
-                MeasureTube(refine(MakeTube(kNumAround, 8, rowHeight), masks),
-                            GetTubeRowHeight(kNumAround, rowHeight), 8);
-            double most = 0;
-            for (double quarter : quarters) {
-                most = std::max(most, std::abs(quarter - 1));
-            }
-            entries.push_back({"tube", most});
-        }
-    }
-
     void chooseVertices() {
         constexpr double kTolerance = 1e-6;
-        constexpr double kNearLine = 0.03;
         constexpr double kOuter = 1;
         constexpr double kInner = 1.0 / 17;
         constexpr double kOfRings = 0.4; // the rest by area
@@ -866,17 +670,11 @@ private:
             double const angle = std::atan2(position.y(), position.x());
             bool const isInSector =
                 distance > 0 && angle > -kTolerance && angle < kPi / _numFaces + kTolerance;
-            bool const isBesideLine = position.x() > -kTolerance &&
-                                      position.x() < 0.5 + kTolerance && position.y() > kNearLine &&
-                                      position.y() < 2;
-            if (isOnLine()    ? isBesideLine
-                : isRegular() ? (isInSector || distance == 0) && position.x() < 0.5 + kTolerance
-                              : isInSector && distance > kInner && distance < kOuter) {
+            if (isRegular() ? (isInSector || distance == 0) && position.x() < 0.5 + kTolerance
+                            : isInSector && distance > kInner && distance < kOuter) {
                 vertices.push_back(vertex);
-                _distances.push_back(position.y());
                 double const area = areas[std::size_t(vertex)];
-                rings.push_back(isRegular() || isOnLine() ? 0
-                                                          : int(std::floor(-std::log2(distance))));
+                rings.push_back(isRegular() ? 0 : int(std::floor(-std::log2(distance))));
                 ofRings.resize(std::max(ofRings.size(), std::size_t(rings.back()) + 1));
                 ofRings[std::size_t(rings.back())] += area;
                 _areas.push_back(area);
@@ -908,9 +706,8 @@ private:
     Surface _surface;
     Points _lifted;
     std::vector<std::pair<int, bool>>
-        _free;                      // positions in the table, and whether masks are symmetric
-    std::vector<double> _areas;     // by chosen vertex; their sum is 1
-    std::vector<double> _distances; // of those, from a line
+        _free;                  // positions in the table, and whether masks are symmetric
+    std::vector<double> _areas; // by chosen vertex; their sum is 1
     std::unique_ptr<Curvatures> _curvatures;
     std::vector<MeshCenter> _centers; // at the first level with constant masks
 };

@@ -72,7 +72,7 @@ void run(TableFit const &fit) {
 }
 
 void searchQuads(int numFaces, Effort const &effort) {
-    QuadMaskSearch const search(numFaces, numFaces == 2 ? effort.quadLevel - 1 : effort.quadLevel);
+    QuadMaskSearch const search(numFaces, effort.quadLevel);
     run({search.GetShipped(), search.GetStart(), effort.maxQuadSteps,
          [&](Weights const &weights) { return search.Measure(weights); },
          [&](Weights const &weights) { return search.Round(weights); },
@@ -117,9 +117,6 @@ std::vector<Table> makeTables() {
              "far_ext/rules/quadRows.inl: by the paths of flags of vertices with so many quads",
              [=](Effort const &effort) { searchQuads(numFaces, effort); }});
     }
-    tables.push_back({"quads-line",
-                      "far_ext/rules/quadLineRows.inl: in the first row of quads on a line",
-                      [](Effort const &effort) { searchQuads(2, effort); }});
     auto const add = [&tables](std::string const &name, char const *where,
                                SearchedMasks const &searched) {
         tables.push_back({name, std::string("far_ext/rules/mask.cpp: ") + where,
