@@ -654,11 +654,8 @@ LimitMask FaceLimitMaskFinder::Find(Index face) const {
             addHalfTangents(half, mask);
         }
     }
-    Index const first = _level.faceFirstCorner[face];
-    if (!FindCornerTags(_level.quadCorners, first, first + size).empty()) {
-        return findAfterStep(face);
-    }
     // The F-face has no vertex with one face.
+    Index const first = _level.faceFirstCorner[face];
     bool const isBesideOneFace = !FindCornerTags(_level.sectorCorners, first, first + size).empty();
     return isBesideOneFace ? stepBack(std::move(mask), face) : mask;
 }
@@ -682,17 +679,13 @@ LimitMask FaceLimitMaskFinder::findAfterStep(Index face) const {
     child.diagonalSharpness[0] =
         Crease(_sdcOptions).SubdivideUniformSharpness(_level.GetDiagonalSharpness(face));
 
-    if (_level.IsHalfFace(face)) {
-        child.halfFaces.Assign(std::vector<Index>{0});
-        child.faceEdges.Assign(std::vector<Index>(std::size_t(size), 0));
-        child.edgeFaces.Resize(1);
-        child.edgeFaces[0] = {0, kSharpBoundaryB};
-    }
     child.numHexagonalSteps = _level.numHexagonalSteps + 1;
-    for (QuadCorner const &quad : FindCornerTags(_level.quadCorners, first, first + size)) {
-        QuadFlags const flags = AppendToQuadFlags(quad.flags, _level.numHexagonalSteps, 0, 0);
-        if (flags.HasAny()) {
-            child.quadCorners.push_back({quad.corner - first, flags});
+    if (size == HexIndexing::kNumEFaceCorners) {
+        for (QuadCorner const &quad : FindCornerTags(_level.quadCorners, first, first + size)) {
+            QuadFlags const flags = AppendToQuadFlags(quad.flags, _level.numHexagonalSteps, 0, 0);
+            if (flags.HasAny()) {
+                child.quadCorners.push_back({quad.corner - first, flags});
+            }
         }
     }
     return stepBack(FaceLimitMaskFinder(child, _sdcOptions, _schemeOptions).Find(0), face);

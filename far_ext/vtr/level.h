@@ -109,7 +109,7 @@ struct IrregularCorner {
 /// Each begins with its corner, and has no padding: behind the corner, equal bytes are equal tags.
 struct CornerTags {
     std::vector<SectorCorner> sectorCorners; ///< of a corner by kind
-    // For FaceMask::Smooth; empty with other masks, but for quads beside lines where hexagonal steps begin.
+    // Those with FaceMask::Smooth; empty with other masks.
     std::vector<IrregularCorner> irregularCorners; ///< one for a corner at most
     QuadCorners quadCorners;                       ///< one for a corner at most
 

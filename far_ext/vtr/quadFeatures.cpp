@@ -8,7 +8,6 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <utility>
 #include <vector>
 
 namespace OpenSubdivHex::FarExt::internal {
@@ -38,82 +37,6 @@ QuadFlags makeBaseFlags(Level const &level, Index vert) {
         return {};
     }
     return {flag, flag, sharpness};
-}
-
-// The first row of quads beside smooth sharp lines, before the first step.
-class LineQuadFinder {
-public:
-    explicit LineQuadFinder(Level const &level) : _level(level) {}
-
-    // Adds the corners of a quad if it is beside the line that its edge from corner \p start on lies in: the vertices
-    // of that edge are regular on the line, the other two smooth, with four quads.
-    void Add(Index start, std::vector<QuadCorner> &result) const {
-        Index const face = _level.FindFaceOfCorner(start);
-        if (_level.GetFaceSize(face) != kQuad) {
-            return;
-        }
-        Index corners[kQuad] = {start};
-        for (int i = 1; i < kQuad; ++i) {
-            corners[i] = _level.GetNextCorner(face, corners[i - 1]);
-        }
-        auto const getVert = [&](int i) { return _level.faceVerts[corners[i]]; };
-        if (!isOnLine(getVert(0)) || !isOnLine(getVert(1)) || !isAbove(getVert(2)) ||
-            !isAbove(getVert(3))) {
-            return;
-        }
-        float const sharpness = getSharpness(_level.faceEdges[start]);
-        constexpr LineFlag kOut[kQuad] = {LineFlag::Along, LineFlag::Up, LineFlag::Top,
-                                          LineFlag::Down};
-        for (int i = 0; i < kQuad; ++i) {
-            LineFlag const in = kOut[(i % 2 == 0 ? 1 : 0) + (i < 2 ? 0 : 2)];
-            result.push_back(
-                {corners[i], {MakeLineQuadFlag(kOut[i]), MakeLineQuadFlag(in), sharpness}});
-        }
-    }
-
-private:
-    static constexpr int kQuad = 4;
-
-    float getSharpness(Index edge) const {
-        return _level.IsBoundary(edge) ? Crease::SHARPNESS_INFINITE : _level.GetEdgeSharpness(edge);
-    }
-    bool isAbove(Index vert) const {
-        QuadFlags const flags = makeBaseFlags(_level, vert);
-        return flags.out == MakeQuadFlag(kQuad) && flags.sharpness == 0;
-    }
-    bool isOnLine(Index vert) const;
-
-    Level const &_level;
-};
-
-// Whether the vertex has two quads on each side of one line, which is as sharp before it as behind it.
-bool LineQuadFinder::isOnLine(Index vert) const {
-    Far::ConstIndexArray const faces = _level.GetVertexFaces(vert);
-    Far::ConstIndexArray const edges = _level.GetVertexEdges(vert);
-    bool const isBorder = faces.size() == 2 && edges.size() == 3;
-    bool const isInside = faces.size() == 4 && edges.size() == 4;
-    if ((!isBorder && !isInside) || _level.IsNonManifold(vert) ||
-        Crease::IsSharp(_level.GetVertexSharpness(vert))) {
-        return false;
-    }
-    for (Index face : faces) {
-        if (_level.GetFaceSize(face) != kQuad || _level.IsHalfFace(face)) {
-            return false;
-        }
-    }
-    // From edge to edge around the vertex.
-    int const last = edges.size() - 1;
-    auto const isSharp = [&](int i) { return Crease::IsSharp(getSharpness(edges[i])); };
-    for (Index edge : edges) {
-        if (_level.IsBoundary(edge) && _level.edgeFaces[edge][1] == kFreeBoundary) {
-            return false;
-        }
-    }
-    int const first = isSharp(0) ? 0 : 1;
-    return (isBorder ? first == 0 && !isSharp(1) && isSharp(last)
-                     : isSharp(first) && isSharp(first + 2) && !isSharp(1 - first) &&
-                           !isSharp(3 - first)) &&
-           getSharpness(edges[first]) == getSharpness(edges[first + 2]);
 }
 
 class QuadFinder {
@@ -159,11 +82,6 @@ private:
     QuadFlags append(QuadFlags flags, int outDigit, int inDigit) const {
         return AppendToQuadFlags(flags, _parent.numHexagonalSteps, outDigit, inDigit);
     }
-    // The corners where a side of an edge starts and ends.
-    std::pair<Index, Index> getEnds(Index edge, int side) const {
-        Index const start = _parent.GetSideCorner(edge, side);
-        return {start, _parent.GetNextCorner(_parent.edgeFaces[edge][side], start)};
-    }
     template <typename FUNCTION>
     void forEachCorner(Index face, FUNCTION const &function) const;
 
@@ -191,11 +109,7 @@ bool QuadFinder::readParent() {
     ParallelFor(_parent.numCorners, [&](Index corner) {
         _flags[std::size_t(corner)] = ofVerts[std::size_t(_parent.faceVerts[corner])];
     });
-    for (QuadCorner const &quad : _parent.quadCorners) {
-        _flags[std::size_t(quad.corner)] = quad.flags;
-    }
-    return !_parent.quadCorners.empty() ||
-           std::any_of(ofVerts.begin(), ofVerts.end(),
+    return std::any_of(ofVerts.begin(), ofVerts.end(),
                        [](QuadFlags flags) { return flags.HasAny(); });
 }
 
@@ -231,70 +145,36 @@ void QuadFinder::forEachCorner(Index face, FUNCTION const &function) const {
         }
         return;
     }
-    if (face >= _level.numFaces - _level.numVFaces) {
-        return;
-    }
-    bool const isHalf = _level.IsHalfFace(face);
-    if (!isHalf && size != HexIndexing::kNumEFaceCorners) {
+    if (face >= _level.numFaces - _level.numVFaces || size != HexIndexing::kNumEFaceCorners) {
         return;
     }
     Index const edge = _refinement.GetEFaceParent(face);
     QuadFlags made[HexIndexing::kNumEFaceCorners];
-    for (int side = 0; side < (isHalf ? 1 : 2); ++side) {
-        EFaceSide const &places = isHalf      ? kBoundaryEFaceSide
-                                  : side == 0 ? kEFaceSideA
-                                              : kEFaceSideB;
-        auto const [start, end] = getEnds(edge, side);
-        SharpQuadFlag const atStart = getParent(start).GetOut();
-        SharpQuadFlag const atEnd = getParent(end).GetIn();
-        made[places.endFVertex] = append(JoinQuadFlags(atEnd, atEnd), 1, 2);
-        made[places.startFVertex] = append(JoinQuadFlags(atStart, atStart), 2, 1);
-        if (isHalf) {
-            // As if the same was beyond a crease.
-            made[places.startVertex] = append(JoinQuadFlags(atStart, atStart), 3, 3);
-            made[places.endVertex] = append(JoinQuadFlags(atEnd, atEnd), 3, 3);
-        } else {
-            SharpQuadFlag const beyond = getParent(getEnds(edge, 1 - side).second).GetIn();
-            made[places.startVertex] = append(JoinQuadFlags(beyond, atStart), 3, 3);
-        }
+    for (int side = 0; side < 2; ++side) {
+        EFaceSide const &places = side == 0 ? kEFaceSideA : kEFaceSideB;
+        Index const start = _parent.GetSideCorner(edge, side);
+        Index const end = _parent.GetNextCorner(_parent.edgeFaces[edge][side], start);
+        Index const otherStart = _parent.GetSideCorner(edge, 1 - side);
+        Index const otherEnd = _parent.GetNextCorner(_parent.edgeFaces[edge][1 - side], otherStart);
+        QuadFlags const atStart = getParent(start);
+        QuadFlags const atEnd = getParent(end);
+        QuadFlags const beyond = getParent(otherEnd); // at the start, on the other side
+        float const sharpness = std::max(atStart.sharpness, beyond.sharpness);
+        made[places.startVertex] = append({beyond.in, atStart.out, sharpness}, 3, 3);
+        made[places.endFVertex] = append({atEnd.in, atEnd.in, atEnd.sharpness}, 1, 2);
+        made[places.startFVertex] = append({atStart.out, atStart.out, atStart.sharpness}, 2, 1);
     }
-    for (int local = 0; local < size; ++local) {
+    for (int local = 0; local < HexIndexing::kNumEFaceCorners; ++local) {
         function(first + local, made[local]);
     }
 }
 
 } // namespace
 
-void FindLineQuads(Level &level) {
-    std::vector<QuadCorner> quads;
-    LineQuadFinder const finder(level);
-    for (Index edge : level.boundaryEdges) {
-        finder.Add(level.GetSideCorner(edge, 0), quads);
-    }
-    for (std::size_t edge = 0; edge < level.edgeSharpness.size(); ++edge) {
-        if (Crease::IsSharp(level.edgeSharpness[edge]) && !level.IsBoundary(Index(edge))) {
-            for (int side : {0, 1}) {
-                finder.Add(level.GetSideCorner(Index(edge), side), quads);
-            }
-        }
-    }
-    std::sort(quads.begin(), quads.end(),
-              [](QuadCorner const &x, QuadCorner const &y) { return x.corner < y.corner; });
-    level.quadCorners.clear();
-    for (QuadCorner const &quad : quads) {
-        level.quadCorners.push_back(quad);
-    }
-}
-
 void FindQuadCorners(FaceMask faceMask, Refinement const &refinement, Level &level) {
     level.quadCorners.clear();
-    if (faceMask != FaceMask::Smooth || !level.hasFullTopology) {
-        return;
-    }
-    if (level.numHexagonalSteps > 0) {
+    if (faceMask == FaceMask::Smooth && level.numHexagonalSteps > 0 && level.hasFullTopology) {
         QuadFinder(refinement, level).Find();
-    } else if (refinement.isTruncation) {
-        FindLineQuads(level);
     }
 }
 

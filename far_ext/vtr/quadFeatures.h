@@ -6,18 +6,11 @@
 
 namespace OpenSubdivHex::FarExt::internal {
 
-/// \brief Fills quadCorners of \p level, at which hexagonal steps begin, with the corners of quads in the first row beside
-/// sharp lines, which have masks of their own with FaceMask::Smooth.
-///
-/// The quad has an edge on the line.  The vertices of that edge have two quads on each side of the line, which is smooth
-/// and as sharp before them as behind them; the other two vertices of the quad have four quads and nothing sharp.
-void FindLineQuads(Level &level);
-
 /// \brief Fills quadCorners of \p level, the child of \p refinement, from the parent's: with the paths by which the
 /// corners of quads came to be corners of the level, where \p faceMask has masks by these.
 ///
 /// Before the first step they begin at the corners of quads around vertices all of whose faces are quads, but for
-/// those on a boundary, on an infinitely sharp edge, infinitely sharp, or not manifold; and at FindLineQuads().
+/// those on a boundary, on an infinitely sharp edge, infinitely sharp, or not manifold.
 void FindQuadCorners(FaceMask faceMask, Refinement const &refinement, Level &level);
 
 } // namespace OpenSubdivHex::FarExt::internal

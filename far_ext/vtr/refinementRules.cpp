@@ -192,11 +192,8 @@ void RefinementRules::makeRuledVertices(bool hasIrregular) {
             }
         }
     };
-    for (SharpVertex sharp : _level.sharpVerts) {
+    for (SharpVertex const &sharp : _level.sharpVerts) {
         addIrregularBefore(sharp.vert);
-        if (hasIrregular) {
-            setLineWeights(sharp);
-        }
         VertexRule rule = {sharp.faceWeight, 0, {}, {}, nullptr};
         auto const add = [&rule](Index source, double weight) {
             rule.sources[rule.numSources] = source;
@@ -216,58 +213,21 @@ void RefinementRules::makeRuledVertices(bool hasIrregular) {
     addIrregularBefore(_level.numVertices);
 }
 
-// Between first rows of quads, neighbors along the line have other weights.
-void RefinementRules::setLineWeights(SharpVertex &sharp) const {
-    if (_level.quadCorners.empty() || _faceMask != FaceMask::Smooth || sharp.creaseShare == 0) {
-        return;
-    }
-    double weight = -1;
-    for (Index k = _level.vertFirstFace[sharp.vert]; k < _level.vertFirstFace[sharp.vert + 1];
-         ++k) {
-        Index const corner = _level.GetVertexCorner(k);
-        QuadFlags const flags = _level.quadCorners.GetFlags(corner);
-        if (!IsOnQuadLine(flags)) {
-            return;
-        }
-        weight = std::max(weight, FindLineQuadRow(_level.numHexagonalSteps, flags).neighborWeight);
-    }
-    if (weight < 0) {
-        return;
-    }
-    // An edge of phase A has the larger one.
-    double const largest = std::max(sharp.neighborWeights[0], sharp.neighborWeights[1]);
-    for (double &neighborWeight : sharp.neighborWeights) {
-        double const changed = sharp.creaseShare * weight * (neighborWeight / largest);
-        sharp.vertexWeight += neighborWeight - changed;
-        neighborWeight = changed;
-    }
-}
-
 // Where the paths of all corners of a vertex tell its weights, these have the share that its sharpness leaves.
 void RefinementRules::makeVertexWeights() {
-    if (_level.quadCorners.empty() || _level.numVertices == 0 || _faceMask != FaceMask::Smooth) {
+    if (_level.quadCorners.empty() || _level.numVertices == 0) {
         return;
     }
     struct OfCorner {
-        double weight = -1;
+        float weight = -1; // with so few digits it is exact
         float share = 0;
     };
-    // Before the first step the other faces around a vertex of the first row beside a line have the weight of all.
-    bool const isBase = _level.numHexagonalSteps == 0;
-    OfCorner const ofOthers =
-        isBase ? OfCorner{GetPlainVertexMask(kQuad).faceWeight, 1} : OfCorner();
-    auto const find = [&](QuadFlags flags) -> OfCorner {
+    auto const find = [this](QuadFlags flags) -> OfCorner {
         QuadRow const row = FindQuadRow(_level.numHexagonalSteps, flags);
-        QuadRow const ofLine = FindLineQuadRow(_level.numHexagonalSteps, flags);
-        if (ofLine.vertexWeight < 0 || ofLine.share == 0) {
-            return {row.vertexWeight, row.share};
-        }
-        double const share = double(ofLine.share);
-        double const rest = isBase ? ofOthers.weight : row.vertexWeight;
-        return {share * ofLine.vertexWeight + (1 - share) * rest, 1};
+        return {float(row.vertexWeight), flags.GetShare()};
     };
-    // In the constant levels and before the first step few vertices have such weights.
-    bool const areFew = isBase || _level.numHexagonalSteps >= kNumStepsToConstantMasks;
+    // In the constant levels few vertices have such weights, and have rules of their own.
+    bool const areFew = _level.numHexagonalSteps >= kNumStepsToConstantMasks;
     std::vector<Index> few;
     Buffer<OfCorner> ofCorners;
     if (areFew) {
@@ -290,7 +250,7 @@ void RefinementRules::makeVertexWeights() {
             return ofCorners[std::size_t(corner)];
         }
         QuadFlags const flags = _level.quadCorners.GetFlags(corner);
-        return flags.HasAny() ? find(flags) : ofOthers;
+        return flags.HasAny() ? find(flags) : OfCorner();
     };
     std::map<std::vector<double>, int> positions;
     std::vector<double> weights;
@@ -307,7 +267,7 @@ void RefinementRules::makeVertexWeights() {
             if (share == 0) {
                 break;
             }
-            weights.push_back(ofCorner.weight);
+            weights.push_back(double(ofCorner.weight));
             weights[0] -= weights.back();
         }
         if (share == 0) {
@@ -409,16 +369,15 @@ private:
     std::vector<Index> findSharpFaces() const;
     void addFace(Index face, int rule);
     void readTags(Index face, FaceTags &tags);
-    // What paths tell of a corner in a face, or half a hexagon, of some size.
-    QuadRow findLineQuadRow(QuadFlags flags) const;
-    QuadRow findQuadRow(QuadFlags flags, int size) const;
+    QuadRow findQuadRow(QuadFlags flags) const {
+        return FindQuadRow(_level.numHexagonalSteps, flags);
+    }
     bool hasOwnRows(FaceTags const &tags) const;
     Index findNextFace(FaceTags const &read);
     void addRule(FaceTags const &tags);
     void addRow(std::vector<double> const &row);
     static void addMask(double const (&mask)[kHexagon], int corner, bool isBackwards, double share,
                         std::vector<double> &row);
-    static void addLineMask(QuadRow const &ofLine, int corner, std::vector<double> &row);
     void addIrregularWeights(IrregularCorner const &irregular, int corner,
                              std::vector<double> &row);
     // The entries of one corner.
@@ -522,24 +481,15 @@ void RefinementRules::DenseRuleMaker::addRow(std::vector<double> const &row) {
     _rules._weights.insert(_rules._weights.end(), row.begin(), row.end());
 }
 
-QuadRow RefinementRules::DenseRuleMaker::findQuadRow(QuadFlags flags, int size) const {
-    return size == kHexagon && _faceMask == FaceMask::Smooth
-               ? FindQuadRow(_level.numHexagonalSteps, flags)
-               : QuadRow();
-}
-
-QuadRow RefinementRules::DenseRuleMaker::findLineQuadRow(QuadFlags flags) const {
-    return _faceMask == FaceMask::Smooth ? FindLineQuadRow(_level.numHexagonalSteps, flags)
-                                         : QuadRow();
-}
-
 // Whether any corner does not follow the circulant mask: flags alone are no reason.
 bool RefinementRules::DenseRuleMaker::hasOwnRows(FaceTags const &tags) const {
     return tags.isHalf || tags.diagonal > 0 || !tags.sectorCorners.empty() ||
            !tags.irregularCorners.empty() ||
-           std::any_of(tags.quadFlags.begin(), tags.quadFlags.end(), [&](QuadFlags flags) {
-               return findQuadRow(flags, tags.size).HasMask() || findLineQuadRow(flags).HasMask();
-           });
+           (tags.size == kHexagon && std::any_of(tags.quadFlags.begin(), tags.quadFlags.end(),
+                                                 [this](QuadFlags flags) {
+                                                     return flags.GetShare() > 0 &&
+                                                            findQuadRow(flags).mask != nullptr;
+                                                 }));
 }
 
 // Corners of a face with nothing of their own have the rows of its circulant rule.
@@ -565,14 +515,14 @@ void RefinementRules::DenseRuleMaker::addRule(FaceTags const &tags) {
         IrregularCorner const *const ofIrregular =
             irregular != tags.irregularCorners.end() && irregular->corner == corner ? irregular++
                                                                                     : nullptr;
-        QuadFlags const flags = i < kHexagon ? tags.quadFlags[std::size_t(i)] : QuadFlags();
-        QuadRow const ofLine = findLineQuadRow(flags);
-        QuadRow const byPath = findQuadRow(flags, size);
-        double const ofPath = !byPath.HasMask() ? 0 : ofLine.HasMask() ? 1 : double(byPath.share);
+        QuadFlags const flags =
+            size == kHexagon ? tags.quadFlags[std::size_t(i)] : QuadFlags();
+        QuadRow const byPath =
+            flags.HasAny() ? findQuadRow(flags) : QuadRow{nullptr, false, -1, -1};
+        float const ofPath = byPath.mask ? flags.GetShare() : 0;
         std::size_t const circulantRow =
             _rules._circulants[std::size_t(size)] + std::size_t(size - i);
-        if (sharp == 0 && towards == 0 && !hasOneFace && !ofIrregular && ofPath == 0 &&
-            !ofLine.HasMask()) {
+        if (sharp == 0 && towards == 0 && !hasOneFace && !ofIrregular && ofPath == 0) {
             _rules._rows.push_back(circulantRow);
             continue;
         }
@@ -602,9 +552,6 @@ void RefinementRules::DenseRuleMaker::addRule(FaceTags const &tags) {
         }
         if (ofPath > 0) {
             addMask(*byPath.mask, i, byPath.isBackwards, ofPath, row);
-        }
-        if (ofLine.HasMask()) {
-            addLineMask(ofLine, i, row);
         }
         addRow(row);
     }
@@ -652,28 +599,6 @@ void RefinementRules::DenseRuleMaker::addMask(double const (&mask)[kHexagon], in
     for (int j = 0; j < kHexagon; ++j) {
         double &weight = row[std::size_t((corner + (isBackwards ? kHexagon - j : j)) % kHexagon)];
         weight += share * (mask[j] - weight);
-    }
-}
-
-// Mixes its share of a line's row into that of a corner, whose weights these are so far.
-void RefinementRules::DenseRuleMaker::addLineMask(QuadRow const &ofLine, int corner,
-                                                  std::vector<double> &row) {
-    double const share = double(ofLine.share);
-    if (ofLine.size == kHexagon) {
-        addMask(*ofLine.mask, corner, ofLine.isBackwards, share, row);
-        return;
-    }
-    // A quad, half a face, or one half of a hexagon.
-    constexpr int kFace[kTrapezoid] = {0, 1, 2, 3};
-    auto const &places =
-        row.size() == kHexagon ? kHexagonHalves[corner < kDiagonalEnd ? 1 : 0] : kFace;
-    int const place = int(std::find(places, places + kTrapezoid, corner) - places);
-    for (double &weight : row) {
-        weight *= 1 - share;
-    }
-    for (int j = 0; j < kTrapezoid; ++j) {
-        int const next = (place + (ofLine.isBackwards ? kTrapezoid - j : j)) % kTrapezoid;
-        row[std::size_t(places[next])] += share * (*ofLine.mask)[j];
     }
 }
 

@@ -190,7 +190,6 @@ private:
     }
     void makeCirculantRules();
     void endFaceRuns();
-    void setLineWeights(SharpVertex &sharp) const;
     void makeVertexWeights();
     void makeRuledVertices(bool hasIrregular);
 
