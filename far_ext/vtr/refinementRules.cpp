@@ -485,11 +485,10 @@ void RefinementRules::DenseRuleMaker::addRow(std::vector<double> const &row) {
 bool RefinementRules::DenseRuleMaker::hasOwnRows(FaceTags const &tags) const {
     return tags.isHalf || tags.diagonal > 0 || !tags.sectorCorners.empty() ||
            !tags.irregularCorners.empty() ||
-           (tags.size == kHexagon && std::any_of(tags.quadFlags.begin(), tags.quadFlags.end(),
-                                                 [this](QuadFlags flags) {
-                                                     return flags.GetShare() > 0 &&
-                                                            findQuadRow(flags).mask != nullptr;
-                                                 }));
+           (tags.size == kHexagon &&
+            std::any_of(tags.quadFlags.begin(), tags.quadFlags.end(), [this](QuadFlags flags) {
+                return flags.GetShare() > 0 && findQuadRow(flags).mask != nullptr;
+            }));
 }
 
 // Corners of a face with nothing of their own have the rows of its circulant rule.
@@ -515,8 +514,7 @@ void RefinementRules::DenseRuleMaker::addRule(FaceTags const &tags) {
         IrregularCorner const *const ofIrregular =
             irregular != tags.irregularCorners.end() && irregular->corner == corner ? irregular++
                                                                                     : nullptr;
-        QuadFlags const flags =
-            size == kHexagon ? tags.quadFlags[std::size_t(i)] : QuadFlags();
+        QuadFlags const flags = size == kHexagon ? tags.quadFlags[std::size_t(i)] : QuadFlags();
         QuadRow const byPath =
             flags.HasAny() ? findQuadRow(flags) : QuadRow{nullptr, false, -1, -1};
         float const ofPath = byPath.mask ? flags.GetShare() : 0;
