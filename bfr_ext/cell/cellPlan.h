@@ -71,8 +71,8 @@ public:
         int place;
         Pair toCoords[2]; ///< of u and v: the derivatives by them of what the corner's are by
     };
-    /// A cell with places, and which child of the cell before it is.
     struct Apart;
+    /// A cell with places, and which child of the cell before it is.
     struct Node {
         std::size_t child;
         bool isWhole;

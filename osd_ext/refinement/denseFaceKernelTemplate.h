@@ -101,16 +101,17 @@ void refineDenseFaces(DenseFaceTask const &task) {
     constexpr int kSize = DenseFaceMask::kSize;
     PlainFaceQuads const plain(*task.plainMask);
     Elements<float const> const src = task.src;
-    // Of the next face.
+    // The next face reads and writes there.
     Elements<float> dst = {ACCESS::At(task.dst, task.firstCorner), task.dst.stride};
     Far::Index const *verts = task.verts + task.firstCorner;
-    Far::Index const *const endVerts = verts + std::ptrdiff_t(task.end - task.begin) * kSize;
-    // Of face 0 if all before were hexagons, too.
-    Far::Index const *const origin = verts - std::ptrdiff_t(task.begin) * kSize;
+    Far::Index const *const firstVerts = verts;
+    auto const getVerts = [&](Far::Index face) {
+        return firstVerts + std::ptrdiff_t(face - task.begin) * kSize;
+    };
+    Far::Index const *const endVerts = getVerts(task.end);
     DenseFaceMask const *const masks = task.masks;
     for (auto const *run = task.runs; verts < endVerts; ++run) {
-        Far::Index const *const behind =
-            std::min(endVerts, origin + std::ptrdiff_t(run[1].begin) * kSize);
+        Far::Index const *const behind = getVerts(std::min(run[1].begin, task.end));
         if (run->rule == FarExt::internal::RefinementRules::kCirculant) {
             std::ptrdiff_t const count = behind - verts;
             refineUnrolledFaces<ACCESS, kSize, HAS_OPPOSITE>(plain, src, verts, dst, 0, count);
