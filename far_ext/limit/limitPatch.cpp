@@ -255,10 +255,12 @@ void LimitPatchGatherer::addFace(Index face, int local, bool isRing, LimitPatch 
     Index const first = _level.faceFirstCorner[face];
     int const size = _level.faceFirstCorner[face + 1] - first;
     float const diagonal = _level.GetDiagonalSharpness(face);
+    int diagonalEnd = _level.GetDiagonalEnd(face);
     if (_level.IsHalfFace(face)) {
         local = 0;
     } else if (Crease::IsSharp(diagonal)) {
-        local = local < kDiagonalEnd ? kDiagonalStart : kDiagonalEnd;
+        local = local < diagonalEnd ? kDiagonalStart : diagonalEnd;
+        diagonalEnd = local == kDiagonalStart ? diagonalEnd : size - diagonalEnd;
     }
     Index const patchFirst = Index(patch.faceVerts.size());
     for (int i = 0; i < size; ++i) {
@@ -278,9 +280,8 @@ void LimitPatchGatherer::addFace(Index face, int local, bool isRing, LimitPatch 
                 _level, patch);
         }
     }
-    if (CrossedFace const *const crossed = _level.FindCrossedFace(face);
-        crossed && Crease::IsSharp(diagonal)) {
-        patch.crossedFaces.push_back({Index(patch.faceSizes.size()), crossed->end});
+    if (Crease::IsSharp(diagonal) && _level.FindCrossedFace(face)) {
+        patch.crossedFaces.push_back({Index(patch.faceSizes.size()), diagonalEnd});
     }
     patch.faceSizes.push_back(size);
     patch.diagonalSharpness.push_back(diagonal);
