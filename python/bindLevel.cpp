@@ -169,16 +169,21 @@ py::array_t<float> getCoords(Level const &self, int half, IS_SPLIT const &isSpli
         auto const none = std::numeric_limits<float>::quiet_NaN();
         std::vector<float> values(2 * std::size_t(level.GetNumFaceVertices()), none);
         float *place = values.data();
+        std::vector<float> ofHalf;
         for (Index f = 0; f < level.GetNumFaces(); ++f) {
             bool const isSplit = isSplitFace(level, f);
-            float ofHalf[8];
-            if (!find(level, f, half, isSplit ? ofHalf : place)) {
+            int const size = level.GetFaceVertices(f).size();
+            int const end = level.GetFaceDiagonalEnd(f);
+            int const numOfHalf = isSplit ? GetHalfSize(half, size, end) : 0;
+            ofHalf.resize(2 * std::size_t(numOfHalf));
+            if (!find(level, f, half, isSplit ? ofHalf.data() : place)) {
                 throwNoPlaces(level, ofSurfaceLevel);
             }
-            for (int i = 0; isSplit && i < 4; ++i) {
-                std::copy_n(ofHalf + 2 * i, 2, place + 2 * kHexagonHalves[half][i]);
+            for (int i = 0; i < numOfHalf; ++i) {
+                std::copy_n(&ofHalf[2 * std::size_t(i)], 2,
+                            place + 2 * GetPlaceInHalves(half, i, end));
             }
-            place += 2 * level.GetFaceVertices(f).size();
+            place += 2 * size;
         }
         return values;
     });

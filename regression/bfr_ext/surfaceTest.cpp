@@ -65,8 +65,10 @@ std::vector<LevelCorner> getCorners(TopologyLevel const &level) {
         for (int half = 0; half < 1 + isSplit; ++half) {
             std::vector<double> uv(2 * std::size_t(verts.size()));
             EXPECT_TRUE(level.GetFaceSurfaceCoords(face, half, uv.data()));
-            for (int i = 0; i < (isSplit ? 4 : verts.size()); ++i) {
-                int const local = isSplit ? FarExt::kHexagonHalves[half][i] : i;
+            int const end = level.GetFaceDiagonalEnd(face);
+            int const count = isSplit ? FarExt::GetHalfSize(half, verts.size(), end) : verts.size();
+            for (int i = 0; i < count; ++i) {
+                int const local = isSplit ? FarExt::GetPlaceInHalves(half, i, end) : i;
                 result.push_back({level.GetFaceSurfaceFace(face, half),
                                   verts[local],
                                   sides.FindSide(level, face, local, half),

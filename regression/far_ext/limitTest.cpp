@@ -318,8 +318,10 @@ TEST(Limit, NormalsAreThoseOfTheDeepMesh) {
                 bool const isCut = Sdc::Crease::IsInfinite(level.GetFaceDiagonalSharpness(face));
                 std::vector<int> corners;
                 if (isCut) {
-                    auto const &halfCorners = FarExt::kHexagonHalves[half];
-                    corners.assign(std::begin(halfCorners), std::end(halfCorners));
+                    int const end = level.GetFaceDiagonalEnd(face);
+                    for (int i = 0; i < FarExt::GetHalfSize(half, verts.size(), end); ++i) {
+                        corners.push_back(FarExt::GetPlaceInHalves(half, i, end));
+                    }
                 } else {
                     for (int i = 0; i < verts.size(); ++i) {
                         corners.push_back(i);
