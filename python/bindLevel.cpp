@@ -115,7 +115,7 @@ auto matchFVar(COUNT getCount, MATCH match) {
     };
 }
 
-/// The same as makeArray for answers of yes or no.
+/// makeArray for answers of yes or no.
 template <typename QUERY>
 auto makeMask(int (TopologyLevel::*size)() const, bool isFull, QUERY query) {
     return [=](Level const &self) {
@@ -136,7 +136,7 @@ py::array_t<int> getBaseFaces(Level const &self, int half) {
     }));
 }
 
-/// That a level has no places in base faces, or in faces of the surface level.
+/// Throws: a level has no places in base faces, or in faces of the surface level.
 [[noreturn]] void throwNoPlaces(TopologyLevel const &level, bool ofSurfaceLevel) {
     throw py::value_error("level " + std::to_string(level.GetDepth()) +
                           (ofSurfaceLevel
@@ -501,8 +501,8 @@ private:
     OsdExt::DrawOptions _options;
 };
 
-/// What drawn faces have by corner and by face; corners have the shape (corners,), or
-/// (faces, \p width) of faces that have as many; and the separate vertices, where there are such.
+/// Returns the data of drawn faces by corner and by face, and the separate vertices, where there are any.  Data by
+/// corner have the shape (corners,), or (faces, \p width) where all faces have \p width corners.
 py::dict describeFaces(OsdExt::DrawnFaces &&faces, py::ssize_t width, bool isSeparate) {
     auto const byCorner = [width](auto &&values, py::ssize_t numbers) -> py::object {
         using T = std::decay_t<decltype(values[0])>;

@@ -119,9 +119,13 @@ struct Projection {
 
 std::size_t GetCellHeapSize(CellPatch const &cell) {
     LimitPatch const &patch = cell.patch;
-    return GetHeapSizes(cell.locals, cell.corners, patch.sources, patch.faceSizes, patch.faceVerts,
-                        patch.otherCorners, patch.edgeSharpness, patch.diagonalSharpness,
-                        patch.vertSharpness, patch.signature);
+    std::size_t size = GetHeapSizes(cell.locals, cell.corners, patch.sources, patch.faceSizes,
+                                    patch.faceVerts, patch.otherCorners, patch.edgeSharpness,
+                                    patch.diagonalSharpness, patch.vertSharpness,
+                                    patch.sectorCorners, patch.irregularCorners, patch.signature);
+    QuadCorners::ForEachArray(patch.quadCorners,
+                              [&size](auto const &array) { size += GetHeapSizes(array); });
+    return size;
 }
 
 CellType::CellType(CellTypes &types, CellPatch cell, CellRules const &rules)

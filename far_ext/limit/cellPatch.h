@@ -81,8 +81,8 @@ struct CellRefinement {
 /// half cells on this side of the edges, which are those behind corner 0 and so on of a whole cell
 /// and behind corner 1 and so on of a half cell and of a half polygon.
 ///
-/// Of an edge it is the long edge from end to end; of a long edge the edge from its start, the long
-/// edge in its middle and the edge from its end; of a vertex it is the V-vertex.
+/// An edge becomes the long edge between its ends; a long edge becomes the edge at its start, the long
+/// edge in its middle and the edge at its end; a vertex becomes the V-vertex.
 OPENSUBDIVHEX_API CellRefinement RefineCell(CellPatch const &cell, Sdc::Options sdcOptions,
                                             HexSchemeOptions const &schemeOptions,
                                             Interpolation interpolation);

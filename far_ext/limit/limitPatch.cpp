@@ -117,8 +117,8 @@ bool LimitPatchGatherer::comesApart(Index vert) {
     return isApart;
 }
 
-// What tells the vertex of the patch that a corner has: that of the level or, where it comes apart, the fan.
-// When the complete vertices have numbers, others do not come apart, as in plain neighborhoods.
+// Returns the key of a corner's vertex in the patch: the vertex of the level or, where that comes apart, the fan.
+// Once the complete vertices have numbers, others do not come apart, as in plain neighborhoods.
 Index LimitPatchGatherer::findKey(Index corner) {
     Index const vert = _level.faceVerts[corner];
     if (!comesApart(vert)) {
@@ -666,7 +666,7 @@ struct SparseRow {
         }
     }
 
-    // Of the faces around a vertex of a few faces.
+    // Room for the faces around a vertex of a few faces.
     static constexpr std::size_t kUsualSize = 32;
 
     std::vector<std::pair<Index, double>> entries;

@@ -4,10 +4,10 @@
 
 #include "buffer.h"
 #include "kept.h"
+#include "quadCorners.h"
 
 #include "far_ext/indexing.h"
 #include "far_ext/rules/mask.h"
-#include "far_ext/rules/quadPath.h"
 
 #include <opensubdiv/sdc/crease.h>
 #include <opensubdiv/vtr/types.h>
@@ -104,12 +104,6 @@ struct IrregularCorner {
     FacesAround facesAround; ///< of the irregular vertex; Others beside a quad
 };
 
-/// \brief A corner one of whose flags came from a quad, by a path that matters for masks.
-struct QuadCorner {
-    Far::Index corner;
-    QuadFlags flags;
-};
-
 /// \brief Tags of corners, each kind ascending by corner.
 ///
 /// Each begins with its corner, and has no padding: behind the corner, equal bytes are equal tags.
@@ -117,7 +111,7 @@ struct CornerTags {
     std::vector<SectorCorner> sectorCorners; ///< of a corner by kind
     // Those with FaceMask::Smooth; empty with other masks.
     std::vector<IrregularCorner> irregularCorners; ///< one for a corner at most
-    std::vector<QuadCorner> quadCorners;           ///< one for a corner at most
+    QuadCorners quadCorners;                       ///< one for a corner at most
 
     bool HasCornerTags() const {
         return !sectorCorners.empty() || !irregularCorners.empty() || !quadCorners.empty();
@@ -125,9 +119,14 @@ struct CornerTags {
     /// Calls function(tags of the kind ...) for each kind, of one thing or of several that have members of these names.
     template <typename FUNCTION, typename... THINGS>
     static void ForEachKind(FUNCTION const &function, THINGS &...things) {
+        ForEachListedKind(function, things...);
+        function(things.quadCorners...);
+    }
+    /// Only for those that are listed, as vectors.
+    template <typename FUNCTION, typename... THINGS>
+    static void ForEachListedKind(FUNCTION const &function, THINGS &...things) {
         function(things.sectorCorners...);
         function(things.irregularCorners...);
-        function(things.quadCorners...);
     }
 };
 
@@ -143,6 +142,20 @@ OpenSubdiv::Vtr::ConstArray<TAG> FindCornerTags(std::vector<TAG> const &tags, Fa
         ++last;
     }
     return {tags.data() + (first - tags.begin()), int(last - first)};
+}
+
+/// \brief Those of a QuadCorners.
+struct QuadCornerRange {
+    QuadCorners::Iterator first;
+    QuadCorners::Iterator behind;
+
+    QuadCorners::Iterator begin() const { return first; }
+    QuadCorners::Iterator end() const { return behind; }
+    bool empty() const { return first == behind; }
+    QuadCorner const &front() const { return *first; }
+};
+inline QuadCornerRange FindCornerTags(QuadCorners const &tags, Far::Index begin, Far::Index end) {
+    return {{tags, begin, end}, {tags, end, end}};
 }
 
 /// \brief A boundary edge where an edge of level 0 came apart into one for each of its faces.  Edges
@@ -378,7 +391,8 @@ struct Level : CornerTags {
         function(level.lineEdges);
         function(level.sharpVerts);
         function(level.irregularVerts);
-        CornerTags::ForEachKind(function, level);
+        CornerTags::ForEachListedKind(function, level);
+        QuadCorners::ForEachArray(level.quadCorners, function);
     }
 
     int depth = 0;

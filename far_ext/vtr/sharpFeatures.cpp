@@ -165,7 +165,7 @@ SharpVertex maskOfRule(Level const &level, FaceMask faceMask, Crease const &crea
 }
 
 SharpVertex blend(SharpVertex const &parent, SharpVertex const &child, double parentWeight) {
-    // Of two rules in sequence at most one is a crease, so that its neighbours stand alone; a
+    // At most one of two rules in sequence is a crease, so that its neighbours stand alone; a
     // corner and a smooth mask have neighbours of weight 0.
     SharpVertex result = parent.rule == Crease::RULE_CREASE ? parent : child;
     double const childWeight = 1 - parentWeight;

@@ -353,7 +353,7 @@ TEST(PatchTable, IsCloseToTheLimit) {
     }
 }
 
-// What a program does that knows Far and Osd alone.
+// A program that knows Far and Osd alone.
 TEST(PatchTable, ServesOpenSubdiv) {
     Shape const &shape = GetShape("cube");
     ReferenceValues const positions = GetPositions(shape);

@@ -19,7 +19,7 @@ using Tools::PatchNumbering;
 
 namespace {
 
-/// What a stream makes, by the face and the coordinates of a place: numbers of the point, of derivatives
+/// The output of a stream, by the face and the coordinates of a place: numbers of the point, of derivatives
 /// and of values.
 template <typename REAL>
 using StreamedPlaces = std::map<std::array<REAL, 3>, std::vector<REAL>>;

@@ -164,7 +164,7 @@ std::vector<float> refinePrimvar(Patch const &patch, TopologyRefiner const &refi
     return result;
 }
 
-/// The same by RefinementEvaluator.
+/// Evaluates by RefinementEvaluator.
 std::vector<float> evaluate(Patch const &patch, TopologyRefiner const &refiner, bool isVarying) {
     OsdExt::RefinementEvaluator::Options options;
     options.interpolationMode =

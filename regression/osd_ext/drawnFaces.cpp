@@ -205,7 +205,7 @@ std::string findTriangleError(PolygonIndices const &polygons,
             for (std::size_t j = 0; j < 3; ++j) {
                 std::size_t const to = 3 * triangle + j;
                 std::size_t place = 0;
-                // Of the same vertex in several corners the values decide.
+                // If a vertex is in several corners, the values decide.
                 auto const isSame = [&](std::size_t from) {
                     bool same = polygons.vertices[from] == triangles.vertices[to];
                     for (std::size_t c = 0; c < polygons.fvarValues.size(); ++c) {

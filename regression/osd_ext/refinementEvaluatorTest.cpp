@@ -36,7 +36,7 @@ constexpr Sdc::Options::FVarLinearInterpolation kLinearInterpolations[] = {
     Sdc::Options::FVAR_LINEAR_CORNERS_PLUS1, Sdc::Options::FVAR_LINEAR_CORNERS_PLUS2,
     Sdc::Options::FVAR_LINEAR_BOUNDARIES,    Sdc::Options::FVAR_LINEAR_ALL};
 
-/// Of values up to 1 in size: a few roundings per level.
+/// A few roundings per level, for values up to 1 in size.
 constexpr double kTolerance = 1e-6;
 constexpr float kGuard = -12345.678f;
 

@@ -20,7 +20,7 @@ constexpr int kMinNumCells = 1 << 15;
 
 } // namespace
 
-/// What becomes of a base face.
+/// The facets of a base face.
 struct CellPieces::Patch {
     explicit Patch(LevelTessellation cells)
         : tessellation(std::move(cells)), facets(std::size_t(tessellation.GetNumFacetVertices())),
@@ -57,7 +57,7 @@ CellPieces::CellPieces(BfrExt::SurfaceFactory const &factory, BfrExt::CellForest
     numberFront();
 }
 
-// Those that some face has, in the order of the forest.
+// Numbers the points that some face has, in the order of the forest.
 void CellPieces::numberFront() {
     _frontVerts.assign(std::size_t(_forest.GetNumBoundaryPoints()), -1);
     for (int face = 0; face < _forest.GetNumFaces(); ++face) {

@@ -28,7 +28,7 @@ std::vector<float> gather(BfrExt::Surface<float> const &surface, std::vector<flo
     return result;
 }
 
-/// What makes values of the last level of a refiner; null where that is level 0.
+/// Makes the evaluator of a refiner's last level; null where that is level 0.
 std::unique_ptr<OsdExt::RefinementEvaluator> makeEvaluator(FarExt::TopologyRefiner const &refiner,
                                                            FarExt::StencilMode mode, int channel) {
     if (refiner.GetMaxLevel() == 0) {
@@ -214,7 +214,7 @@ void CellView::addTriangles(int number, Face const &face) {
     }
 }
 
-// Of what faces share, the last one is taken: points are the same to the bit, normals nearly so.
+// Where faces share a vertex, the last face counts: points are the same to the bit, normals nearly so.
 void CellView::Evaluate(std::vector<float> const &controlPoints) {
     struct Values {
         std::vector<float> points;
