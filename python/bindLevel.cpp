@@ -173,12 +173,13 @@ py::array_t<float> getCoords(Level const &self, int half, IS_SPLIT const &isSpli
         for (Index f = 0; f < level.GetNumFaces(); ++f) {
             bool const isSplit = isSplitFace(level, f);
             int const size = level.GetFaceVertices(f).size();
-            ofHalf.resize(2 * std::size_t(size));
+            int const end = level.GetFaceDiagonalEnd(f);
+            int const numOfHalf = isSplit ? GetHalfSize(half, size, end) : 0;
+            ofHalf.resize(2 * std::size_t(numOfHalf));
             if (!find(level, f, half, isSplit ? ofHalf.data() : place)) {
                 throwNoPlaces(level, ofSurfaceLevel);
             }
-            int const end = level.GetFaceDiagonalEnd(f);
-            for (int i = 0; isSplit && i < GetHalfSize(half, size, end); ++i) {
+            for (int i = 0; i < numOfHalf; ++i) {
                 std::copy_n(&ofHalf[2 * std::size_t(i)], 2,
                             place + 2 * GetPlaceInHalves(half, i, end));
             }

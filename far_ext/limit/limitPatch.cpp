@@ -259,9 +259,8 @@ void LimitPatchGatherer::addFace(Index face, int local, bool isRing, LimitPatch 
     if (_level.IsHalfFace(face)) {
         local = 0;
     } else if (Crease::IsSharp(diagonal)) {
-        bool const isBeforeEnd = local < diagonalEnd;
-        local = isBeforeEnd ? kDiagonalStart : diagonalEnd;
-        diagonalEnd = isBeforeEnd ? diagonalEnd : size - diagonalEnd;
+        local = local < diagonalEnd ? kDiagonalStart : diagonalEnd;
+        diagonalEnd = local == kDiagonalStart ? diagonalEnd : size - diagonalEnd;
     }
     Index const patchFirst = Index(patch.faceVerts.size());
     for (int i = 0; i < size; ++i) {
@@ -282,7 +281,7 @@ void LimitPatchGatherer::addFace(Index face, int local, bool isRing, LimitPatch 
         }
     }
     if (Crease::IsSharp(diagonal) && _level.FindCrossedFace(face)) {
-        patch.crossedFaces.push_back({next, diagonalEnd});
+        patch.crossedFaces.push_back({Index(patch.faceSizes.size()), diagonalEnd});
     }
     patch.faceSizes.push_back(size);
     patch.diagonalSharpness.push_back(diagonal);

@@ -124,7 +124,7 @@ class KnownPolygon {
 public:
     using Pair = BasePolygon::Pair;
 
-    /// Returns the polygon of a shape; null where that is not common.
+    /// Returns the polygon of a shape; null where it is not common.
     static KnownPolygon const *Find(FaceShape shape) {
         int const size = shape.size;
         static KnownPolygon const kAll[] = {KnownPolygon(kMinSize), KnownPolygon(4),

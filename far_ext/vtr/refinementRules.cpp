@@ -531,7 +531,7 @@ void RefinementRules::DenseRuleMaker::addRule(FaceTags const &tags) {
         }
         row[std::size_t(i)] += towards;
         if (sharp > 0) {
-            // Of a face cut by its diagonal, each half follows the mask of a half face V, W, Q, P ...: V and W are
+            // If a face is cut by its diagonal, each half follows the mask of a half face V, W, Q, P ...: V and W are
             // the ends of the diagonal, the others the vertices between them.  At the ends both halves have the
             // same weights.
             std::vector<int> half;

@@ -66,8 +66,8 @@ std::vector<LevelCorner> getCorners(TopologyLevel const &level) {
             std::vector<double> uv(2 * std::size_t(verts.size()));
             EXPECT_TRUE(level.GetFaceSurfaceCoords(face, half, uv.data()));
             int const end = level.GetFaceDiagonalEnd(face);
-            int const size = isSplit ? FarExt::GetHalfSize(half, verts.size(), end) : verts.size();
-            for (int i = 0; i < size; ++i) {
+            int const count = isSplit ? FarExt::GetHalfSize(half, verts.size(), end) : verts.size();
+            for (int i = 0; i < count; ++i) {
                 int const local = isSplit ? FarExt::GetPlaceInHalves(half, i, end) : i;
                 result.push_back({level.GetFaceSurfaceFace(face, half),
                                   verts[local],

@@ -350,10 +350,21 @@ TYPED_TEST_P(DeviceEvaluator, TakesEveryFirstStep) {
         FarExt::HexSchemeOptions schemeOptions;
         schemeOptions.faceMask = FarExt::FaceMask::Smooth;
         schemeOptions.firstStep = firstStep;
-        auto const refiner = MakeRefiner(GetShape("torus"), 3, Sdc::Options::VTX_BOUNDARY_EDGE_ONLY,
-                                         schemeOptions, true);
-        ASSERT_NO_FATAL_FAILURE(this->expectEqual(*refiner, {}, 3));
-        ASSERT_NO_FATAL_FAILURE(this->expectEqualLimit(*refiner, 3, 3));
+        std::vector<Shape> shapes{GetShape("torus")};
+        if (firstStep == FarExt::FirstStep::Truncate) {
+            // Lines pass vertices, in half polygons and in faces that they cross.
+            for (char const *name : {"creaseLoopQuads", "mixedSharpnessQuads"}) {
+                shapes.push_back(GetFeatureShape(name));
+            }
+            shapes.push_back(GetShape("mixedPatch"));
+        }
+        for (Shape const &shape : shapes) {
+            SCOPED_TRACE(testing::Message() << shape.name << ", first step " << int(firstStep));
+            auto const refiner =
+                MakeRefiner(shape, 3, Sdc::Options::VTX_BOUNDARY_EDGE_ONLY, schemeOptions, true);
+            ASSERT_NO_FATAL_FAILURE(this->expectEqual(*refiner, {}, 3));
+            ASSERT_NO_FATAL_FAILURE(this->expectEqualLimit(*refiner, 3, 3));
+        }
     }
 }
 

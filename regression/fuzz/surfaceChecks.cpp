@@ -95,8 +95,10 @@ void checkLimitsOfVertices(MeshSurfaces<REAL> const &mesh, OracleLevels const &l
             }
             std::vector<REAL> coords(2 * std::size_t(verts.size()));
             level.GetFaceSurfaceCoords(face, half, coords.data());
-            for (int i = 0; i < (isSplit ? 4 : verts.size()); ++i) {
-                int const vert = verts[isSplit ? FarExt::kHexagonHalves[half][i] : i];
+            int const end = level.GetFaceDiagonalEnd(face);
+            int const count = isSplit ? FarExt::GetHalfSize(half, verts.size(), end) : verts.size();
+            for (int i = 0; i < count; ++i) {
+                int const vert = verts[isSplit ? FarExt::GetPlaceInHalves(half, i, end) : i];
                 REAL const *const uv = &coords[2 * std::size_t(i)];
                 Eigen::RowVectorXd const point = mesh.Evaluate(baseFace, uv).row(0);
                 if (!(GetDifference(point, limits.row(vert)) <= mesh.GetTolerance())) {

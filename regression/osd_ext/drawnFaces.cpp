@@ -43,8 +43,10 @@ bool isCut(TopologyLevel const &level, DrawOptions const &options, int face) {
 void addPolygon(TopologyLevel const &level, DrawOptions const &options, int face, bool isHalf,
                 int half, PolygonIndices *polygons) {
     std::vector<int> corners;
-    for (int i = 0; i < (isHalf ? 4 : level.GetFaceVertices(face).size()); ++i) {
-        corners.push_back(isHalf ? FarExt::kHexagonHalves[half][i] : i);
+    int const size = level.GetFaceVertices(face).size();
+    int const end = level.GetFaceDiagonalEnd(face);
+    for (int i = 0; i < (isHalf ? FarExt::GetHalfSize(half, size, end) : size); ++i) {
+        corners.push_back(isHalf ? FarExt::GetPlaceInHalves(half, i, end) : i);
     }
     for (int i = 0; i < int(corners.size()); ++i) {
         int const corner = corners[std::size_t(i)];
