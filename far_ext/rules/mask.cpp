@@ -71,12 +71,12 @@ void ComputeFaceVertexMask(FaceMask mask, Interpolation interpolation, int n, do
 void ComputeHalfFaceVertexMask(FaceMask mask, Interpolation interpolation, int n, double *weights) {
     int const half = n - 1; // sides of the polygon from V to W
     int const size = 2 * half;
-    std::vector<long double> ofDistance;
+    std::vector<long double> ofDistance(static_cast<std::size_t>(size));
     bool const isFalling = mask == FaceMask::Smooth && interpolation == Interpolation::Vertex &&
                            size > kMaxHalvedBySmooth;
     for (int j = 0; j < size; ++j) {
-        ofDistance.push_back(isFalling ? fallingSmoothWeight(j, size)
-                                       : faceWeight(mask, interpolation, j, size));
+        ofDistance[std::size_t(j)] =
+            isFalling ? fallingSmoothWeight(j, size) : faceWeight(mask, interpolation, j, size);
     }
     // Between places in the polygon, that of V being 0, of W half, and then those of the Q.
     auto const weightAt = [&](int from, int to) {
