@@ -311,11 +311,11 @@ CallStatus PatchBuilder::LevelBuilder::FindLimits() {
     });
     _surfaceFaces.assign(2 * std::size_t(_level.numFaces), 0);
     if (_depth > _surfaceDepth) {
+        SurfaceFaces const faces(_mesh.levels[std::size_t(_surfaceDepth)]);
         ParallelFor(2 * _level.numFaces, [&](Index i) {
             Index const face = FindBaseFace(_mesh, _surfaceDepth, _depth, {i / 2, i % 2});
             _surfaceFaces[std::size_t(i)] =
-                std::uint8_t(std::min(_mesh.levels[std::size_t(_surfaceDepth)].GetFaceSize(face),
-                                      PatchSite::kMaxSurfaceFaceSize));
+                std::uint8_t(std::min(faces.GetShape(face).size, PatchSite::kMaxSurfaceFaceSize));
         });
     }
     _frames.emplace(_level, _rows, _verts);

@@ -172,6 +172,18 @@ struct CrossedFace {
     int end; ///< the vertex where the diagonal ends
 };
 
+/// The entry of a face among some that ascend; null where there is none.
+inline CrossedFace const *FindCrossedFaceIn(std::vector<CrossedFace> const &faces,
+                                            Far::Index face) {
+    if (faces.empty()) {
+        return nullptr;
+    }
+    auto const found = std::lower_bound(
+        faces.begin(), faces.end(), face,
+        [](CrossedFace const &crossed, Far::Index other) { return crossed.face < other; });
+    return found != faces.end() && found->face == face ? &*found : nullptr;
+}
+
 /// @name The places of vertices in their edges, where a hexagonal step made both without boundaries
 /// @{
 /// All edges of a V-vertex are spokes, which begin there.
@@ -290,15 +302,7 @@ struct Level : CornerTags {
     float GetEdgeSharpness(Index e) const { return edgeSharpness.empty() ? 0 : edgeSharpness[e]; }
     /// @name Faces in two halves
     /// @{
-    CrossedFace const *FindCrossedFace(Index f) const {
-        if (crossedFaces.empty()) {
-            return nullptr;
-        }
-        auto const found = std::lower_bound(
-            crossedFaces.begin(), crossedFaces.end(), f,
-            [](CrossedFace const &crossed, Index face) { return crossed.face < face; });
-        return found != crossedFaces.end() && found->face == f ? &*found : nullptr;
-    }
+    CrossedFace const *FindCrossedFace(Index f) const { return FindCrossedFaceIn(crossedFaces, f); }
     /// The vertex where the diagonal of a face ends, if it has one.
     int GetDiagonalEnd(Index f) const {
         CrossedFace const *const crossed = FindCrossedFace(f);
@@ -383,6 +387,7 @@ struct Level : CornerTags {
         function(level.edgeSharpness);
         function(level.diagonalSharpness);
         function(level.crossedFaces);
+        function(level.cutFaces);
         function(level.vertSharpness);
         function(level.faceHoles);
         function(level.nonManifoldVerts);
@@ -447,7 +452,9 @@ struct Level : CornerTags {
     Buffer<float> edgeSharpness;     ///< by edge, of interior ones
     Buffer<float> diagonalSharpness; ///< by face
     std::vector<CrossedFace>
-        crossedFaces;                ///< ascending; the same at all levels behind a truncation
+        crossedFaces; ///< ascending; the same at all levels behind a truncation
+    /// Those of them whose diagonals are infinitely sharp, of the level that a truncation makes.
+    std::vector<CrossedFace> cutFaces;
     Buffer<float> vertSharpness;     ///< of the vertices of level 0, the only ones that have any
     Buffer<unsigned char> faceHoles; ///< by face: bit h is set when half h lies in holes
     std::vector<Index> nonManifoldVerts; ///< ascending

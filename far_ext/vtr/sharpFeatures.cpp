@@ -587,6 +587,9 @@ void refineDiagonalsOfTruncation(Refinement const &refinement, SharpnessRefiner 
         };
         child.diagonalSharpness[crossed.face] =
             std::min(getSharpness(kDiagonalStart), getSharpness(crossed.end));
+        if (Crease::IsInfinite(child.diagonalSharpness[crossed.face])) {
+            child.cutFaces.push_back(crossed);
+        }
     }
     dropIfSmooth(child.diagonalSharpness);
 }
@@ -650,6 +653,7 @@ void RefineTags(Refinement const &refinement, Sdc::Options sdcOptions, Level &ch
     child.diagonalSharpness.Resize(0);
     child.vertSharpness.Resize(0);
     child.faceHoles.Resize(0);
+    child.cutFaces.clear();
     child.nonManifoldVerts.clear();
     for (Index vert : parent.nonManifoldVerts) {
         if (Index const cVert = refinement.GetVertexChildVertex(vert);

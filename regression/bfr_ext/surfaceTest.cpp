@@ -127,10 +127,10 @@ void expectLimits(Shape const &shape, SurfaceCase const &surfaceCase, Sdc::Optio
     SurfaceSet<double> const surfaces(*refiner, shape.positions, &cache);
     TopologyLevel const &base = refiner->GetLevel(refiner->GetMaxLevel() - level);
     bool const isFree = options.GetVtxBoundaryInterpolation() == Sdc::Options::VTX_BOUNDARY_NONE;
-    for (int face = 0; face < base.GetNumFaces(); ++face) {
-        ASSERT_EQ(surfaces[face].IsValid(),
-                  !base.IsFaceHole(face) && !(isFree && isAtFreeBoundary(base, face)))
-            << "face " << face;
+    FarExt::SurfaceFaces const faces(base.GetLevel());
+    for (int face = 0; face < faces.GetNumFaces(); ++face) {
+        bool const isAtFree = isFree && isAtFreeBoundary(base, faces.GetLevelFace(face).face);
+        ASSERT_EQ(surfaces[face].IsValid(), !faces.IsHole(face) && !isAtFree) << "face " << face;
     }
     for (LevelCorner const &corner : getCorners(refiner->GetLevel(refiner->GetMaxLevel()))) {
         if (surfaces[corner.face].IsValid()) {

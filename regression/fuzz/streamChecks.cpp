@@ -55,9 +55,9 @@ public:
 
 private:
     bool hasAllSurfaces() const {
-        auto const &base = _mesh.factory->GetLevel();
-        for (int face = 0; face < base.GetNumFaces(); ++face) {
-            if (!_mesh.Has(face) && !base.IsFaceHole(face)) {
+        FarExt::SurfaceFaces const &faces = _mesh.factory->GetFaces();
+        for (int face = 0; face < faces.GetNumFaces(); ++face) {
+            if (!_mesh.Has(face) && !faces.IsHole(face)) {
                 return false;
             }
         }
