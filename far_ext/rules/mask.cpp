@@ -37,7 +37,7 @@ long double fallingSmoothWeight(int j, int n) {
     return ((j == 0 ? n : 0) + sum) / (6.0L * n);
 }
 
-// The sides of the largest polygon where less the weights of ghosts none of Smooth is negative.
+// Sides of the largest polygon whose half has no negative weight by the mask of Smooth.
 constexpr int kMaxHalvedBySmooth = 10;
 
 long double varyingWeight(int j, int n) { return ((j == 0 ? n : 0) + 1) / (2.0L * n); }
