@@ -56,7 +56,7 @@ bool isInLattice(LimitPatch const &patch) {
     int const valence = CellType::GetLatticeValence(faceSize);
     auto const isSame = [&](int size) { return size == faceSize; };
     if (valence == 0 || !std::all_of(patch.faceSizes.begin(), patch.faceSizes.end(), isSame) ||
-        isSharp(patch) || !patch.sectorCorners.empty() || !patch.quadCorners.empty()) {
+        isSharp(patch) || patch.HasCornerTags()) {
         return false;
     }
     // Vertices where the patch ends have fewer faces.

@@ -6,6 +6,7 @@
 #include "kept.h"
 
 #include "far_ext/indexing.h"
+#include "far_ext/rules/lineRow.h"
 #include "far_ext/rules/mask.h"
 #include "far_ext/rules/quadPath.h"
 
@@ -110,6 +111,18 @@ struct QuadCorner {
     QuadFlags flags;
 };
 
+/// \brief A corner of a face beside a line that is regular there, behind a truncation.
+struct LineRowCorner {
+    Far::Index corner;
+    /// Of the least sharp of the line's edges that make it regular, less one for each step.
+    float sharpness;
+    LineFace face;
+    std::uint16_t place; ///< of the corner in the face
+
+    /// The share of the masks beside a sharp line.
+    float GetShare() const { return std::min(1.0f, sharpness); }
+};
+
 /// \brief Tags of corners, each kind ascending by corner.
 ///
 /// Each begins with its corner, and has no padding: behind the corner, equal bytes are equal tags.
@@ -118,9 +131,11 @@ struct CornerTags {
     // Those with FaceMask::Smooth; empty with other masks.
     std::vector<IrregularCorner> irregularCorners; ///< one for a corner at most
     std::vector<QuadCorner> quadCorners;           ///< one for a corner at most
+    std::vector<LineRowCorner> lineRowCorners;     ///< more than one between lines
 
     bool HasCornerTags() const {
-        return !sectorCorners.empty() || !irregularCorners.empty() || !quadCorners.empty();
+        return !sectorCorners.empty() || !irregularCorners.empty() || !quadCorners.empty() ||
+               !lineRowCorners.empty();
     }
     /// Calls function(tags of the kind ...) for each kind, of one thing or of several that have members of these names.
     template <typename FUNCTION, typename... THINGS>
@@ -128,6 +143,7 @@ struct CornerTags {
         function(things.sectorCorners...);
         function(things.irregularCorners...);
         function(things.quadCorners...);
+        function(things.lineRowCorners...);
     }
 };
 
