@@ -54,8 +54,8 @@ private:
     float findSharpnessOfEnds(Index face, int start, int end) const;
 
     void goOnFrom(Index face, LineRowCorner const &tag);
-    void goOnBehind(Index pCorner, float sharpness);
-    void goOnBeyond(Index pCorner, int vVertex, int fVertex, float sharpness);
+    void goOnAtEnd(Index face, LineRowCorner const &tag, float sharpness);
+    Index findHexagon(Index pCorner) const;
     EFaceSide const &getSide(Index pCorner) const {
         Index const edge = _parent.faceEdges[pCorner];
         return _parent.GetSideCorner(edge, 0) == pCorner ? kEFaceSideA : kEFaceSideB;
@@ -134,7 +134,7 @@ void LineRowFinder::beginOnLine(Index edge) {
             FaceCorner const beyond = _level.GetCornerAcross(far);
             if (_level.GetFaceSize(beyond.face) == kHexagon) {
                 add(beyond.corner, LineFace::Beyond, 0, sharpness);
-                add(_level.GetNextCorner(beyond.face, beyond.corner), LineFace::Beyond, 0,
+                add(_level.GetNextCorner(beyond.face, beyond.corner), LineFace::Beyond, 1,
                     sharpness);
             }
         }
@@ -202,76 +202,67 @@ void LineRowFinder::Begin() {
     sort();
 }
 
-// The E-face of the edge that begins at a corner is behind the F-face on that side.
-void LineRowFinder::goOnBehind(Index pCorner, float sharpness) {
+// The hexagon that the edge which begins at a corner makes; INDEX_INVALID where it makes another face or none.
+Index LineRowFinder::findHexagon(Index pCorner) const {
     Index const edge = _parent.faceEdges[pCorner];
-    if (!_parent.IsBoundary(edge)) {
-        addHexagon(_refinement.GetEdgeChildFace(edge), getSide(pCorner).fFaceEdge, LineFace::Behind,
-                   sharpness);
-    }
-}
-
-// Of the E-face of the edge that begins at a corner, two corners are beyond a hexagon on the line.
-void LineRowFinder::goOnBeyond(Index pCorner, int vVertex, int fVertex, float sharpness) {
-    Index const edge = _parent.faceEdges[pCorner];
-    if (!_parent.IsBoundary(edge)) {
-        Index const eFace = _refinement.GetEdgeChildFace(edge);
-        add(getCorner(eFace, vVertex), LineFace::Beyond, 0, sharpness);
-        add(getCorner(eFace, fVertex), LineFace::Beyond, 0, sharpness);
-    }
+    Index const eFace =
+        _parent.IsBoundary(edge) ? Far::INDEX_INVALID : _refinement.GetEdgeChildFace(edge);
+    bool const isHexagon = eFace != Far::INDEX_INVALID && _level.GetFaceSize(eFace) == kHexagon;
+    return isHexagon ? eFace : Far::INDEX_INVALID;
 }
 
 void LineRowFinder::goOnFrom(Index face, LineRowCorner const &tag) {
-    int const size = _parent.GetFaceSize(face);
-    if (std::optional<LineRowCorner> ofFFace = FindLineRowOfFFace(tag, size, _sdcOptions)) {
+    if (std::optional<LineRowCorner> ofFFace =
+            FindLineRowOfFFace(tag, _parent.GetFaceSize(face), _sdcOptions)) {
         ofFFace->corner = getCorner(face, tag.corner - _parent.faceFirstCorner[face]);
         _level.lineRowCorners.push_back(*ofFFace);
     }
     float const sharpness = _creasing.SubdivideUniformSharpness(tag.sharpness);
-    if (!(sharpness > 0)) {
-        return;
-    }
-    Index const before = _parent.GetPrevCorner(face, tag.corner);
     if (tag.face == LineFace::Half && tag.place == 2) {
-        goOnBehind(tag.corner, sharpness);
+        if (Index const eFace = findHexagon(tag.corner); eFace != Far::INDEX_INVALID) {
+            addHexagon(eFace, getSide(tag.corner).fFaceEdge, LineFace::Behind, sharpness);
+        }
     }
-    if (tag.face != LineFace::OnLine) {
-        return;
-    }
-    // The edge to the far side begins at place 2, and that from there ends at place 5.
-    if (tag.place == 2) {
-        goOnBeyond(tag.corner, getSide(tag.corner).startVertex, getSide(tag.corner).startFVertex,
-                   sharpness);
-    } else if (tag.place == kHexagon - 1) {
-        goOnBeyond(before, getSide(before).endVertex, getSide(before).endFVertex, sharpness);
-    }
-    if (tag.place > 1) {
+    if (tag.face != LineFace::OnLine || tag.place > 1) {
         return;
     }
     if (tag.place == 0) {
         Index const edge = _parent.faceEdges[tag.corner];
-        Index const eFace = _refinement.GetEdgeChildFace(edge);
-        addHalf(eFace, _parent.GetSideCorner(edge, 0) == tag.corner ? 0 : 1, sharpness);
+        int const half = _parent.GetSideCorner(edge, 0) == tag.corner ? 0 : 1;
+        addHalf(_refinement.GetEdgeChildFace(edge), half, sharpness);
     }
-    // Between it and the half polygon on that side.
-    Index const across = tag.place == 0 ? before : tag.corner;
-    Index const edge = _parent.faceEdges[across];
-    if (_parent.IsBoundary(edge)) {
+    goOnAtEnd(face, tag, sharpness);
+}
+
+// At an end V of the A edge of a face, V's child and the F-vertex in the half polygon beside it begin and end another A
+// edge, of the E-face between the two faces.
+void LineRowFinder::goOnAtEnd(Index face, LineRowCorner const &tag, float sharpness) {
+    bool const isStart = tag.place == 0;
+    Index const between = isStart ? _parent.GetPrevCorner(face, tag.corner) : tag.corner;
+    Index const eFace = findHexagon(between);
+    if (eFace == Far::INDEX_INVALID) {
         return;
     }
-    FaceCorner const other = _parent.GetCornerAcross(across);
-    Index const end =
-        tag.place == 0 ? other.corner : _parent.GetNextCorner(other.face, other.corner);
+    FaceCorner const across = _parent.GetCornerAcross(between);
+    EFaceSide const &side = getSide(across.corner);
+    Index const end = isStart ? across.corner : _parent.GetNextCorner(across.face, across.corner);
     for (LineRowCorner const &beside : FindCornerTags(_parent.lineRowCorners, end, end + 1)) {
         if (beside.face != LineFace::Half) {
             continue;
         }
-        // The line comes to the vertex's child through this face's neighbor.
-        EFaceSide const &side = getSide(other.corner);
-        Index const eFace = _refinement.GetEdgeChildFace(edge);
-        int const first = tag.place == 0 ? side.startFVertex : side.endVertex;
-        addHexagon(eFace, first, LineFace::OnLine,
-                   std::min(sharpness, _creasing.SubdivideUniformSharpness(beside.sharpness)));
+        float const least =
+            std::min(sharpness, _creasing.SubdivideUniformSharpness(beside.sharpness));
+        addHexagon(eFace, isStart ? side.startFVertex : side.endVertex, LineFace::OnLine, least);
+        // The next edge of the face makes the one beyond.
+        Index const next =
+            isStart ? _parent.GetPrevCorner(face, between) : _parent.GetNextCorner(face, between);
+        if (Index const beyond = findHexagon(next); beyond != Far::INDEX_INVALID) {
+            EFaceSide const &own = getSide(next);
+            add(getCorner(beyond, isStart ? own.endVertex : own.startFVertex), LineFace::Beyond, 0,
+                least);
+            add(getCorner(beyond, isStart ? own.endFVertex : own.startVertex), LineFace::Beyond, 1,
+                least);
+        }
     }
 }
 
