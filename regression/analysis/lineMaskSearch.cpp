@@ -387,7 +387,7 @@ public:
     }
 
     Eigen::VectorXd MeasureQuadratics(LineMasks const &masks) const {
-        static double const kOfMean = atof(getenv("MEAN")); // what means at one distance deviate by
+        constexpr double kOfMean = 0.1; // of what means at one distance deviate by
         Points const points = _surface.Refine(masks, _lifted);
         Eigen::Matrix3d exact;
         exact << 1, 1, 0, 0, 0, 1, 1, -1, 0;
@@ -403,9 +403,8 @@ public:
             for (int lift = 0; lift < 3; ++lift) {
                 auto const d = deviation.col(lift);
                 double const factor = std::sqrt(area);
-                static double const o = atof(getenv("OTH"));
-                values.insert(values.end(), {factor * (d[0] + d[2]) / 2, o*factor * (d[0] - d[2]) / 2,
-                                             o*factor * d[1]});
+                values.insert(values.end(), {factor * (d[0] + d[2]) / 2, factor * (d[0] - d[2]) / 2,
+                                             factor * d[1]});
             }
         };
         for (std::size_t k = 0; k < _vertices.size(); ++k) {
@@ -423,6 +422,22 @@ public:
         std::vector<double> values;
         for (int i = 0; i < kNumRows; ++i) {
             values.push_back(kOfNegative * std::min(0.0, masks[std::size_t(i)].weights[0]));
+        }
+        // A vertex of the first row has a half hexagon and one of the next hexagons each.
+        for (int numSteps = 0; numSteps < FarExt::internal::kNumLineSteps; ++numSteps) {
+            auto const leave = [&](std::array<std::pair<LineFace, int>, 3> const &around) {
+                double rest = 1;
+                for (int i = 0; i < kNumRows; ++i) {
+                    bool const isThere =
+                        kTable[i].numSteps == numSteps &&
+                        std::find(around.begin(), around.end(),
+                                  std::pair(kTable[i].face, kTable[i].place)) != around.end();
+                    rest -= isThere ? masks[std::size_t(i)].ofVertex : 0;
+                }
+                values.push_back(kOfNegative * std::min(0.0, rest));
+            };
+            leave({{{kHalf, 2}, {kOnLine, 2}, {kBehind, 1}}});
+            leave({{{kOnLine, 3}, {kBehind, 2}, {kBeyond, 0}}});
         }
         return Eigen::Map<Eigen::VectorXd const>(values.data(), Eigen::Index(values.size()));
     }
@@ -518,14 +533,19 @@ private:
     void chooseVertices() {
         constexpr double kMargin = 0.125; // as beside the lines of tori
         constexpr int kNumGroups = 16;    // in two rows
-        PolygonMesh const &mesh = _surface.GetMesh();
+        // By the masks that the search begins with, so that it does not depend on the library's.
+        PolygonMesh mesh = _surface.GetMesh();
+        Points const points = _surface.Refine(GetStart(), _lifted);
+        for (int i = 0; i < mesh.GetNumVertices(); ++i) {
+            mesh.positions[std::size_t(i)] = {points(i, 0), points(i, 1), 0};
+        }
         std::vector<double> const areas = ComputeVertexAreas(mesh);
         double sum = 0;
         _areasOfGroups.assign(kNumGroups, 0);
         std::vector<int> needed;
         for (int vertex = 0; vertex < mesh.GetNumVertices(); ++vertex) {
             Eigen::Vector3d const &position = mesh.positions[std::size_t(vertex)];
-            double const x = position.x() - kCenter;
+            double const x = position.x();
             double const rows = position.y() / kRowHeight;
             if (x < 0 || x >= 1 || rows < kMargin || rows >= 2) {
                 continue;
@@ -593,11 +613,12 @@ Eigen::VectorXd LineMaskSearch::GetStart() const {
 
 Eigen::VectorXd LineMaskSearch::Measure(Eigen::VectorXd const &weights) const {
     LineMasks const masks = _implementation->Spread(weights);
-    static double const kReg = atof(getenv("REG"));
+    constexpr double kOfChange = 0.03;
     Eigen::VectorXd const parts[] = {_implementation->MeasureQuadratics(masks),
-                                     _implementation->MeasureRest(masks), kReg*(weights-GetStart())};
-    Eigen::VectorXd values(parts[0].size() + parts[1].size()+parts[2].size());
-    values << parts[0], parts[1],parts[2];
+                                     _implementation->MeasureRest(masks),
+                                     kOfChange * (weights - GetStart())};
+    Eigen::VectorXd values(parts[0].size() + parts[1].size() + parts[2].size());
+    values << parts[0], parts[1], parts[2];
     return values;
 }
 

@@ -15,10 +15,11 @@ namespace OpenSubdivHex::Regression {
 /// The control mesh is a strip of equilateral triangles in the plane, with its border on a line, lifted to a bowl and two
 /// saddles, of which second derivatives are estimated at the vertices of a refined level, in the two rows of triangles
 /// beside the border and one period along it.  Searched for are the weights with the least mean square, by area, of what
-/// these deviate by from their mean at the same distance from the border, and, as a smaller part, of what that mean
-/// deviates by from the exact ones.  Points on the line are not searched for: they follow from the line alone.
+/// these deviate by from their mean at the same distance from the border; and, as smaller parts, of what that mean
+/// deviates by from the exact ones, and of what the weights differ by from those of later levels.  Points on the line are
+/// not searched for: they follow from the line alone.
 ///
-/// Rows that the weights leave to 1, and V', have at least 0 there.
+/// What rows, and V', leave to 1 is at least 0.
 class LineMaskSearch {
 public:
     /// \param level  at which surfaces are judged: 4 or more
