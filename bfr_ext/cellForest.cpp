@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cellForest.h"
 
-#include "far_ext/vtr/baseCoords.h"
+#include "far_ext/vtr/level.h"
 #include "far_ext/vtr/parallel.h"
 
 #include <algorithm>
@@ -11,31 +11,24 @@
 
 namespace OpenSubdivHex::BfrExt {
 
+using FarExt::SurfaceFaces;
 using FarExt::internal::Level;
 
 CellForest::CellForest(FarExt::TopologyRefiner const &refiner)
-    : _level(refiner.GetLevel(refiner.GetHexSchemeOptions().GetSurfaceLevel())) {
-    _trees.reserve(std::size_t(_level.GetNumFaces()));
-    _isMatched.resize(std::size_t(_level.GetNumFaces()));
-    for (Index face = 0; face < _level.GetNumFaces(); ++face) {
-        _trees.emplace_back(FarExt::internal::GetFaceShape(_level.GetLevel(), face));
+    : _faces(refiner.GetLevel(refiner.GetHexSchemeOptions().GetSurfaceLevel()).GetLevel()) {
+    _trees.reserve(std::size_t(_faces.GetNumFaces()));
+    _isMatched.resize(std::size_t(_faces.GetNumFaces()));
+    for (Index face = 0; face < _faces.GetNumFaces(); ++face) {
+        _trees.emplace_back(_faces.GetShape(face));
     }
-    _edges.resize(std::size_t(_level.GetNumEdges()));
+    _edges.resize(std::size_t(_faces.GetNumEdges()));
     _polylines = _edges;
-    _firstPoints.assign(_polylines.size() + 1, _level.GetNumVertices());
-}
-
-// Whether the edge runs against the face.
-bool CellForest::isReversed(Index face, int local) const {
-    Level const &level = _level.GetLevel();
-    Index const edge = level.faceEdges[level.faceFirstCorner[face] + local];
-    return level.edgeFaces[edge][0] != face || level.edgeFaceLocals[edge][0] != local;
+    _firstPoints.assign(_polylines.size() + 1, _faces.GetLevel().numVertices);
 }
 
 void CellForest::MatchEdges() {
-    Level const &level = _level.GetLevel();
     auto const hasTree = [&](Index face) {
-        return GetTree(face).GetFaceShape() == FarExt::internal::GetFaceShape(level, face);
+        return GetTree(face).GetFaceShape() == _faces.GetShape(face);
     };
     FarExt::internal::ParallelFor(
         GetNumFaces(), [&](Index face) { _isMatched[std::size_t(face)] = hasTree(face); });
@@ -44,10 +37,9 @@ void CellForest::MatchEdges() {
         Polyline &polyline = _polylines[std::size_t(edge)];
         polyline = _edges[std::size_t(edge)];
         for (int side = 0; side < 2; ++side) {
-            Index const face = level.edgeFaces[edge][side];
-            if (face >= 0 && hasTree(face)) {
-                Polyline const own =
-                    GetTree(face).GetEdgePolyline(level.edgeFaceLocals[edge][side]);
+            auto const [face, local] = _faces.GetSide(edge, side);
+            if (face != Far::INDEX_INVALID && hasTree(face)) {
+                Polyline const own = GetTree(face).GetEdgePolyline(local);
                 polyline.Merge(side == 0 ? own : own.GetReversed());
             }
         }
@@ -57,6 +49,7 @@ void CellForest::MatchEdges() {
         Index start;
         Polyline polyline;
     };
+    Level const &level = _faces.GetLevel();
     std::map<Index, Line> lines;
     auto const forEachLineEdge = [&](auto const &function) {
         for (FarExt::internal::LineEdge const &lineEdge : level.lineEdges) {
@@ -80,16 +73,14 @@ bool CellForest::IsMatched(Index face) const {
     if (_isMatched[std::size_t(face)]) {
         return true;
     }
-    Level const &level = _level.GetLevel();
     CellTree const &tree = GetTree(face);
-    if (tree.GetFaceShape() != FarExt::internal::GetFaceShape(level, face)) {
+    if (tree.GetFaceShape() != _faces.GetShape(face)) {
         return false;
     }
     for (int local = 0; local < tree.GetFaceSize(); ++local) {
         Polyline const own = tree.GetEdgePolyline(local);
-        Polyline const &polyline =
-            GetPolyline(level.faceEdges[level.faceFirstCorner[face] + local]);
-        if (!polyline.Contains(isReversed(face, local) ? own.GetReversed() : own)) {
+        auto const [edge, isReversed] = _faces.GetEdge(face, local);
+        if (!GetPolyline(edge).Contains(isReversed ? own.GetReversed() : own)) {
             return false;
         }
     }
@@ -97,19 +88,18 @@ bool CellForest::IsMatched(Index face) const {
 }
 
 std::vector<Polyline> CellForest::GetFacePolylines(Index face) const {
-    Level const &level = _level.GetLevel();
     std::vector<Polyline> edges;
-    for (int local = 0; local < level.GetFaceSize(face); ++local) {
-        Polyline const &polyline =
-            GetPolyline(level.faceEdges[level.faceFirstCorner[face] + local]);
-        edges.push_back(isReversed(face, local) ? polyline.GetReversed() : polyline);
+    for (int local = 0; local < _faces.GetShape(face).size; ++local) {
+        auto const [edge, isReversed] = _faces.GetEdge(face, local);
+        Polyline const &polyline = GetPolyline(edge);
+        edges.push_back(isReversed ? polyline.GetReversed() : polyline);
     }
     return edges;
 }
 
 LevelTessellation CellForest::GetTessellation(Index face,
                                               LevelTessellation::Options options) const {
-    if (GetTree(face).GetFaceShape() != FarExt::internal::GetFaceShape(_level.GetLevel(), face)) {
+    if (GetTree(face).GetFaceShape() != _faces.GetShape(face)) {
         return LevelTessellation(Parameterization(), 0);
     }
     return LevelTessellation(GetTree(face), GetFacePolylines(face).data(), options);
@@ -117,17 +107,16 @@ LevelTessellation CellForest::GetTessellation(Index face,
 
 // Writes what tells the tessellation of a face.
 void CellForest::getKey(Index face, std::vector<int> &key) const {
-    Level const &level = _level.GetLevel();
     CellTree const &tree = GetTree(face);
     key = {tree.GetFaceSize(), tree.GetFaceShape().isHalf ? 1 : 0};
     for (int cell = 0; cell < tree.GetNumCells(); ++cell) {
         key.push_back(tree.GetFirstChild(cell));
     }
     for (int local = 0; local < tree.GetFaceSize(); ++local) {
-        std::vector<Polyline::Place> const &places =
-            GetPolyline(level.faceEdges[level.faceFirstCorner[face] + local]).GetPlaces();
+        auto const [edge, isReversed] = _faces.GetEdge(face, local);
+        std::vector<Polyline::Place> const &places = GetPolyline(edge).GetPlaces();
         key.push_back(-1 - int(places.size()));
-        if (isReversed(face, local)) {
+        if (isReversed) {
             std::transform(places.rbegin(), places.rend(), std::back_inserter(key),
                            [](Polyline::Place place) { return Polyline::kLength - place; });
         } else {
@@ -137,20 +126,17 @@ void CellForest::getKey(Index face, std::vector<int> &key) const {
 }
 
 int CellForest::GetBoundaryPoints(Index face, int points[]) const {
-    Level const &level = _level.GetLevel();
     if (GetNumBoundaryPoints() > std::numeric_limits<int>::max()) {
         return 0;
     }
     int numPoints = 0;
-    for (int local = 0; local < level.GetFaceSize(face); ++local) {
-        Index const corner = level.faceFirstCorner[face] + local;
-        Index const edge = level.faceEdges[corner];
-        points[numPoints++] = level.faceVerts[corner];
+    for (int local = 0; local < _faces.GetShape(face).size; ++local) {
+        auto const [edge, isReversed] = _faces.GetEdge(face, local);
+        points[numPoints++] = _faces.GetVertex(face, local);
         int const numInner = GetPolyline(edge).GetNumPoints();
-        bool const isBackwards = isReversed(face, local);
         for (int i = 0; i < numInner; ++i) {
             points[numPoints++] =
-                int(GetFirstEdgePoint(edge)) + (isBackwards ? numInner - 1 - i : i);
+                int(GetFirstEdgePoint(edge)) + (isReversed ? numInner - 1 - i : i);
         }
     }
     return numPoints;

@@ -4,6 +4,7 @@
 
 #include "levelTessellation.h"
 
+#include "far_ext/surfaceFaces.h"
 #include "far_ext/topologyRefiner.h"
 
 #include <cstdint>
@@ -43,11 +44,11 @@ public:
 
     /// \brief No face is refined.
     ///
-    /// Base faces are those of the surface level (SurfaceFactory::GetLevel()), to which it refers and
+    /// Base faces and edges are those of SurfaceFactory::GetFaces(), of the surface level, to which it refers and
     /// which the refiner has.
     explicit CellForest(FarExt::TopologyRefiner const &refiner);
 
-    /// Faces of that level.
+    /// Base faces.
     int GetNumFaces() const { return int(_trees.size()); }
     /// Sets the tree of a face, which has the vertices of that.
     void SetTree(Index face, CellTree tree) {
@@ -89,10 +90,9 @@ private:
     friend class PatchStream;
     friend class View;
 
-    bool isReversed(Index face, int local) const;
     void getKey(Index face, std::vector<int> &key) const;
 
-    FarExt::TopologyLevel _level;
+    FarExt::SurfaceFaces _faces;
     std::vector<CellTree> _trees;
     std::vector<char> _isMatched;                // by face; where it is not known, too, it is false
     std::vector<Polyline> _edges;                // what was set

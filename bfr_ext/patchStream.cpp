@@ -5,7 +5,6 @@
 
 #include "far_ext/executor.h"
 #include "far_ext/stencil/interpolationMode.h"
-#include "far_ext/vtr/baseCoords.h"
 #include "far_ext/vtr/parallel.h"
 #include "far_ext/vtr/report.h"
 
@@ -218,9 +217,10 @@ void PatchStream<REAL>::getLevels(Index face, internal::FaceLevels &levels) cons
     if (_forest) {
         return;
     }
-    levels.shape = FarExt::internal::GetFaceShape(_factory.GetLevel().GetLevel(), face);
-    for (Index const edge : _factory.GetLevel().GetFaceEdges(face)) {
-        levels.levels.push_back(_levels.GetEdgeLevel(edge));
+    FarExt::SurfaceFaces const &faces = _factory.GetFaces();
+    levels.shape = faces.GetShape(face);
+    for (int local = 0; local < levels.shape.size; ++local) {
+        levels.levels.push_back(_levels.GetEdgeLevel(faces.GetEdge(face, local).edge));
     }
     levels.levels.push_back(_levels.GetFaceLevel(face));
 }
@@ -305,7 +305,7 @@ Far::Index PatchStream<REAL>::takeFaces(Index beginFace, Index endFace, Batch &b
     std::size_t memory = 0;
     double numLeaves = 0; // at least as many as patches
     for (; beginFace < endFace && order.size() < numFaces && numLeaves < kMaxLeaves; ++beginFace) {
-        if (_factory.GetLevel().IsFaceHole(beginFace)) {
+        if (_factory.GetFaces().IsHole(beginFace)) {
             continue;
         }
         if (_forest) {
@@ -379,7 +379,7 @@ LevelTessellation PatchStream<REAL>::MakeTessellation(Index face) const {
 // The status names the first wrong face, whichever thread finds it.
 template <typename REAL>
 CallStatus PatchStream<REAL>::checkRange(Index beginFace, Index endFace, bool *arePlansKept) const {
-    FarExt::TopologyLevel const &base = _factory.GetLevel();
+    FarExt::SurfaceFaces const &base = _factory.GetFaces();
     if (beginFace < 0 || endFace < beginFace || endFace > base.GetNumFaces()) {
         return FarExt::internal::Failure(StatusCode::InvalidArgument,
                                          "faces " + std::to_string(beginFace) + " to " +
@@ -400,7 +400,7 @@ CallStatus PatchStream<REAL>::checkRange(Index beginFace, Index endFace, bool *a
             "the forest has " + std::to_string(_forest->GetNumFaces()) + " trees, the mesh " +
                 std::to_string(base.GetNumFaces()) + " faces");
     }
-    if (_forest && &_forest->_level.GetLevel() != &base.GetLevel()) {
+    if (_forest && &_forest->_faces.GetLevel() != &base.GetLevel()) {
         return FarExt::internal::Failure(StatusCode::InvalidArgument,
                                          "the forest is that of another refiner");
     }
@@ -414,7 +414,7 @@ CallStatus PatchStream<REAL>::checkRange(Index beginFace, Index endFace, bool *a
     std::mutex mutex;
     auto const check = [&](Checker &checker, Index begin, Index end) {
         for (Index face = beginFace + begin; face < beginFace + end && face < firstBad; ++face) {
-            if (base.IsFaceHole(face)) {
+            if (base.IsHole(face)) {
                 continue;
             }
             CallStatus status = checkFace(face, checker.levels);
@@ -489,7 +489,7 @@ CallStatus PatchStream<REAL>::checkLevels(Index face,
     if (bad == levels.end()) {
         return CallStatus();
     }
-    Index const edge = _factory.GetLevel().GetFaceEdges(face)[int(bad - levels.begin())];
+    Index const edge = _factory.GetFaces().GetEdge(face, int(bad - levels.begin())).edge;
     return refuse(*bad, ComponentType::Edge, "edge", edge);
 }
 
@@ -504,14 +504,14 @@ bool PatchStream<REAL>::runWorkers(Index beginFace, Index endFace, bool arePlans
     // Hands out patches getPatch(0) ... getPatch(count - 1), where their faces are no holes.
     auto const run = [&](Index count, auto const &getPatch) {
         using PatchOfFace = typename Batch::PatchOfFace;
-        FarExt::TopologyLevel const &base = _factory.GetLevel();
+        FarExt::SurfaceFaces const &base = _factory.GetFaces();
         FarExt::internal::ParallelForRange(
             count, makeWorker,
             [&](auto &worker, Index begin, Index end) {
                 CallStatus workerStatus;
                 for (Index i = begin; i < end && !isEnded; ++i) {
                     PatchOfFace const patch = getPatch(i);
-                    if (base.IsFaceHole(patch.face) ||
+                    if (base.IsHole(patch.face) ||
                         worker->Run(patch.face, patch.section, workerStatus)) {
                         continue;
                     }

@@ -21,7 +21,7 @@ class PatchPlans;
 /// \brief How fine the patches of a stream are: a level of refinement for the inside of each base face
 /// and one for each edge of the base mesh, 0 ... LevelTessellation::kLastLevel.
 ///
-/// An edge is named by its number in SurfaceFactory::GetLevel(), whichever face asks: so neighbours fit.
+/// An edge is named by its number in SurfaceFactory::GetFaces(), whichever face asks: so neighbours fit.
 class PatchLevels {
 public:
     /// Gives the level of a face, or of an edge.  Called by any thread, by several at once.

@@ -12,14 +12,6 @@ namespace OpenSubdivHex::BfrExt {
 
 namespace {
 
-FarExt::internal::FaceCells getFaceCells(internal::BaseFace const &face) {
-    return face.type.GetFaceCells(face.size);
-}
-
-} // namespace
-
-namespace {
-
 using internal::BaseFace;
 using internal::CellStencil;
 
@@ -104,7 +96,7 @@ template <typename REAL>
 int Surface<REAL>::GetNumPatchPoints() const {
     return IsValid() ? GetNumControlPoints() +
                            internal::kNumPatchPoints *
-                               internal::GetNumFacePatches(getFaceCells(GetFace()), _patchLevel)
+                               internal::GetNumFacePatches(GetFaceShape(), _patchLevel)
                      : 0;
 }
 
@@ -120,7 +112,7 @@ void Surface<REAL>::ComputePatchPoints(REAL patchPoints[], PointDescriptor const
     if (!IsValid()) {
         return;
     }
-    if (numPlaces >= internal::GetNumFacePatches(getFaceCells(GetFace()), _patchLevel)) {
+    if (numPlaces >= internal::GetNumFacePatches(GetFaceShape(), _patchLevel)) {
         ComputePatchPoints(patchPoints, patchPointDesc);
         return;
     }
@@ -152,7 +144,7 @@ template <typename REAL>
 internal::PatchPlace Surface<REAL>::findPatchPlace(REAL const uv[2], int numDerivatives) const {
     return internal::FindPatchPlace(internal::FindBfrPlace(_parameterization, GetFaceShape(),
                                                            {double(uv[0]), double(uv[1])}, 0),
-                                    getFaceCells(GetFace()), _patchLevel, numDerivatives);
+                                    GetFaceShape(), _patchLevel, numDerivatives);
 }
 
 template <typename REAL>

@@ -7,7 +7,6 @@
 
 #include "far_ext/limit/limitRows.h"
 #include "far_ext/stencil/interpolationMode.h"
-#include "far_ext/vtr/baseCoords.h"
 #include "far_ext/vtr/report.h"
 
 #include <algorithm>
@@ -21,6 +20,7 @@ using FarExt::CallStatus;
 using FarExt::ComponentType;
 using FarExt::Interpolation;
 using FarExt::StatusCode;
+using FarExt::SurfaceFaces;
 using FarExt::internal::CellPatch;
 using FarExt::internal::FVarChannel;
 using FarExt::internal::Level;
@@ -41,12 +41,14 @@ bool isAtFreeBoundary(Level const &level, Far::Index vert) {
 }
 
 // Which of the vertices of a face has so many faces that it may have no limit stencil; as many as there are: none.
-int findVertexOfManyFaces(Level const &level, Far::Index face) {
-    Far::ConstIndexArray const verts = level.GetFaceVertices(face);
-    return int(
-        std::find_if(verts.begin(), verts.end(),
-                     [&](Far::Index vert) { return level.GetNumVertexFaces(vert) >= kManyFaces; }) -
-        verts.begin());
+int findVertexOfManyFaces(SurfaceFaces const &faces, Far::Index face) {
+    int const size = faces.GetShape(face).size;
+    int local = 0;
+    while (local < size &&
+           faces.GetLevel().GetNumVertexFaces(faces.GetVertex(face, local)) < kManyFaces) {
+        ++local;
+    }
+    return local;
 }
 
 internal::CellRules getRules(FarExt::TopologyRefiner const &refiner, Interpolation interpolation) {
@@ -63,7 +65,8 @@ std::shared_ptr<internal::TypeCache> getCache(SurfaceFactory::Options const &opt
 
 SurfaceFactory::SurfaceFactory(FarExt::TopologyRefiner const &refiner, Options options)
     : _refiner(refiner), _level(refiner.GetLevel(refiner.GetHexSchemeOptions().GetSurfaceLevel())),
-      _numRefinements(refiner.GetNumRefinements()), _options(options), _cache(getCache(options)) {
+      _faces(_level.GetLevel()), _numRefinements(refiner.GetNumRefinements()), _options(options),
+      _cache(getCache(options)) {
     FarExt::internal::Hierarchy const &hierarchy = refiner.GetHierarchy();
     for (int channel = -1; channel < refiner.GetNumFVarChannels(); ++channel) {
         _walks.push_back(std::make_shared<internal::FaceWalk>(
@@ -72,8 +75,9 @@ SurfaceFactory::SurfaceFactory(FarExt::TopologyRefiner const &refiner, Options o
 }
 
 SurfaceFactory::SurfaceFactory(SurfaceFactory const &other, Options options)
-    : _refiner(other._refiner), _level(other._level), _numRefinements(other._numRefinements),
-      _options(options), _cache(getCache(options)), _walks(other._walks) {}
+    : _refiner(other._refiner), _level(other._level), _faces(other._faces),
+      _numRefinements(other._numRefinements), _options(options), _cache(getCache(options)),
+      _walks(other._walks) {}
 
 // Some types of the cache, with the faces that are kept of them.  Surfaces own it.
 struct SurfaceFactory::Types {
@@ -140,8 +144,7 @@ bool SurfaceFactory::hasRefinedAgain() const {
 }
 
 bool SurfaceFactory::isFace(Index face) const {
-    return 0 <= face && face < GetNumFaces() && !hasRefinedAgain() &&
-           _level.GetLevel().GetHoles(face) != FarExt::internal::kHole;
+    return 0 <= face && face < GetNumFaces() && !hasRefinedAgain() && !_faces.IsHole(face);
 }
 
 CallStatus SurfaceFactory::checkIsFace(Index face) const {
@@ -158,7 +161,7 @@ CallStatus SurfaceFactory::checkIsFace(Index face) const {
     return CallStatus(StatusCode::InvalidArgument, ComponentType::Face, face,
                       isHole ? name + " is a hole, which has no surface"
                              : name + " is not one of the " + std::to_string(GetNumFaces()) +
-                                   " faces of level " + std::to_string(_level.GetDepth()));
+                                   " base faces of level " + std::to_string(_level.GetDepth()));
 }
 
 CallStatus SurfaceFactory::CheckFace(Index face) const {
@@ -166,7 +169,8 @@ CallStatus SurfaceFactory::CheckFace(Index face) const {
     if (!result.IsOk()) {
         return result;
     }
-    for (Index const vert : _level.GetFaceVertices(face)) {
+    for (int local = 0; local < _faces.GetShape(face).size; ++local) {
+        Index const vert = _faces.GetVertex(face, local);
         if (_walks.front()->IsAtFeature(vert) && isAtFreeBoundary(_level.GetLevel(), vert)) {
             return CallStatus(StatusCode::Unsupported, ComponentType::Face, face,
                               "face " + std::to_string(face) + " has vertex " +
@@ -177,10 +181,23 @@ CallStatus SurfaceFactory::CheckFace(Index face) const {
     return checkCrowd(face, -1, face);
 }
 
+// What a base face is in the mesh (channel -1), or in the value mesh of a channel.
+Far::Index SurfaceFactory::getOwnFace(Index face, int channel) const {
+    if (channel < 0) {
+        return face;
+    }
+    FVarChannel const &values = _refiner.GetHierarchy().channels[std::size_t(channel)];
+    auto const [levelFace, half] = _faces.GetLevelFace(face);
+    auto const [valueFace, valueHalf] =
+        values.levels[std::size_t(_level.GetDepth())].GetValueCell({levelFace, half});
+    return SurfaceFaces(_walks.begin()[channel + 1]->GetLevel()).GetFace({valueFace, valueHalf});
+}
+
 // Whether the patch of a face, of the mesh (channel -1) or of a channel, is not too large.
-CallStatus SurfaceFactory::checkCrowd(Index face, int channel, Index levelFace) const {
+CallStatus SurfaceFactory::checkCrowd(Index face, int channel, Index ownFace) const {
+    internal::FaceWalk const &walk = *_walks.begin()[channel + 1];
     internal::FaceWalk::Crowd const *const crowd =
-        _walks.begin()[channel + 1]->FindCrowd(levelFace);
+        walk.FindCrowd(SurfaceFaces(walk.GetLevel()).GetLevelFace(ownFace).face);
     if (!crowd) {
         return CallStatus();
     }
@@ -205,8 +222,7 @@ CallStatus SurfaceFactory::checkCrowd(Index face, int channel, Index levelFace) 
 
 bool SurfaceFactory::FaceHasLimitSurface(Index face, CallStatus *status) const {
     CallStatus result = CheckFace(face);
-    Level const &level = _level.GetLevel();
-    if (result.IsOk() && findVertexOfManyFaces(level, face) < level.GetFaceSize(face)) {
+    if (result.IsOk() && findVertexOfManyFaces(_faces, face) < _faces.GetShape(face).size) {
         std::vector<Index> points;
         findType(*_cache->Get(), -1, face, face, Interpolation::Vertex, points, result);
     }
@@ -218,41 +234,41 @@ bool SurfaceFactory::FaceHasLimitSurface(Index face, CallStatus *status) const {
 }
 
 Parameterization SurfaceFactory::GetFaceParameterization(Index face) const {
-    return Parameterization(FarExt::internal::GetFaceShape(_level.GetLevel(), face));
+    return Parameterization(_faces.GetShape(face));
 }
 
 // The type of a face that is not plain, from all of its patch; null, and a status, where it has no limit.
 internal::CellType const *SurfaceFactory::findType(internal::CellTypes &types, int channel,
-                                                   Index levelFace, Index face,
+                                                   Index ownFace, Index face,
                                                    Interpolation interpolation,
                                                    std::vector<Index> &points,
                                                    CallStatus &status) const {
     status = CheckFace(face);
     if (status.IsOk() && channel >= 0) {
-        status = checkCrowd(face, channel, levelFace);
+        status = checkCrowd(face, channel, ownFace);
     }
     if (!status.IsOk()) {
         return nullptr;
     }
-    Level const &level = _walks.begin()[channel + 1]->GetLevel();
+    SurfaceFaces const faces(_walks.begin()[channel + 1]->GetLevel());
     CellPatch cell;
     internal::CellRules const rules = getRules(_refiner, interpolation);
-    GatherBaseCell(level, levelFace, rules.sdcOptions, cell);
+    GatherBaseCell(faces, ownFace, rules.sdcOptions, cell);
     std::size_t const numPoints = cell.patch.sources.size();
     points.assign(cell.patch.sources.begin(), cell.patch.sources.end());
     internal::CellType const &type = types.Find(std::move(cell), rules);
-    Far::ConstIndexArray const verts = level.GetFaceVertices(levelFace);
-    int const withManyFaces = findVertexOfManyFaces(level, levelFace);
-    if (withManyFaces < verts.size() && !type.HasCorners()) {
-        Index const vert = _level.GetFaceVertices(face)[withManyFaces];
+    int const size = faces.GetShape(ownFace).size;
+    int const withManyFaces = findVertexOfManyFaces(faces, ownFace);
+    if (withManyFaces < size && !type.HasCorners()) {
+        Index const vert = _faces.GetVertex(face, withManyFaces);
         status = CallStatus(StatusCode::Unsupported, ComponentType::Vertex, vert,
                             "the limit of face " + std::to_string(face) + " at vertex " +
                                 std::to_string(vert) +
                                 " cannot be computed: the steps around it do not converge");
         return nullptr;
     }
-    points.resize(numPoints + 2 * std::size_t(verts.size()));
-    FindBaseCellTurns(level, levelFace, points.data() + numPoints);
+    points.resize(numPoints + 2 * std::size_t(size));
+    FarExt::internal::FindBaseCellTurns(faces, ownFace, points.data() + numPoints);
     return &type;
 }
 
@@ -274,18 +290,18 @@ internal::BaseFace const *SurfaceFactory::makeFace(Types const &types, Index fac
     FarExt::internal::Hierarchy const &hierarchy = _refiner.GetHierarchy();
     FVarChannel const *const values =
         channel < 0 ? nullptr : &hierarchy.channels[std::size_t(channel)];
-    auto const depth = std::size_t(_level.GetDepth());
-    Index const levelFace = values ? values->levels[depth].valueFaces[face] : face;
-    int const size = _level.GetLevel().GetFaceSize(face);
+    Index const ownFace = getOwnFace(face, channel);
+    int const size = _faces.GetShape(face).size;
     internal::FacePoints<internal::BaseType> points(maker.bytes);
     internal::BaseType type;
     if (internal::PlainFaceType const *const plain =
-            maker.gatherer.Find(*types.plain[std::size_t(interpolation)],
-                                *_walks.begin()[channel + 1], levelFace, points)) {
+            _faces.IsHalfOfCut(face)
+                ? nullptr
+                : maker.gatherer.Find(*types.plain[std::size_t(interpolation)],
+                                      *_walks.begin()[channel + 1], ownFace, points)) {
         type = internal::BaseType(*plain);
-    } else if (internal::CellType const *const cellType =
-                   findType(*types.cellTypes, channel, levelFace, face, interpolation, maker.points,
-                            status)) {
+    } else if (internal::CellType const *const cellType = findType(
+                   *types.cellTypes, channel, ownFace, face, interpolation, maker.points, status)) {
         type = internal::BaseType(*cellType);
         points.resize(maker.points.size());
         std::copy(maker.points.begin(), maker.points.end(), points.data());
@@ -293,7 +309,7 @@ internal::BaseFace const *SurfaceFactory::makeFace(Types const &types, Index fac
         return nullptr;
     }
     // Vertices of the value mesh of a later level are its values.
-    if (values && depth == 0) {
+    if (values && _level.GetDepth() == 0) {
         std::for_each_n(points.data(), int(points.size()) - 2 * size,
                         [&](Index &point) { point = values->valuesOfVertices[point]; });
     }

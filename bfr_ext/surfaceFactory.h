@@ -4,6 +4,7 @@
 
 #include "surface.h"
 
+#include "far_ext/surfaceFaces.h"
 #include "far_ext/topologyRefiner.h"
 
 #include <atomic>
@@ -87,8 +88,8 @@ private:
 /// vertices in BfrExt are then those of this *surface level*
 /// (FarExt::HexSchemeOptions::GetSurfaceLevel()), GetLevel() says which, and control points are its
 /// vertices and values.  The refiner has to be refined so far, with full topology, and stays as it is;
-/// its evaluators make the control points.  FarExt::TopologyLevel::GetFaceBaseFace() leads from faces of
-/// GetLevel() to those of level 0, with their materials.
+/// its evaluators make the control points.  GetFaceBaseFace() leads to the faces of level 0, with their materials.  A face of the level that an infinitely sharp crease crosses is
+/// two base faces: base faces and edges are FarExt::SurfaceFaces, which GetFaces() has.
 ///
 /// Holes have no surface, nor have the few faces that FaceHasLimitSurface() names and, with VTX_BOUNDARY_NONE, faces at a
 /// boundary, because such a boundary has no limit.
@@ -179,8 +180,15 @@ public:
     OpenSubdiv::Sdc::Options GetSchemeOptions() const { return _refiner.GetSchemeOptions(); }
     /// The surface level, whose faces have the surfaces: level 0, or level 1 behind a first step.
     FarExt::TopologyLevel const &GetLevel() const { return _level; }
-    /// Faces of that level.
-    int GetNumFaces() const { return _level.GetNumFaces(); }
+    /// Base faces and edges: those of that level, but for faces that are cut.
+    FarExt::SurfaceFaces const &GetFaces() const { return _faces; }
+    /// Base faces.
+    int GetNumFaces() const { return _faces.GetNumFaces(); }
+    /// The face of level 0 that a base face lies in: FarExt::TopologyLevel::GetFaceBaseFace().
+    Index GetFaceBaseFace(Index face) const {
+        FarExt::SurfaceFaces::LevelFace const levelFace = _faces.GetLevelFace(face);
+        return _level.GetFaceBaseFace(levelFace.face, levelFace.half);
+    }
     /// Face-varying channels.
     int GetNumFVarChannels() const { return _refiner.GetNumFVarChannels(); }
 
@@ -293,8 +301,9 @@ private:
     bool hasRefinedAgain() const;
     bool isFace(Index face) const;
     FarExt::CallStatus checkIsFace(Index face) const;
-    FarExt::CallStatus checkCrowd(Index face, int channel, Index levelFace) const;
-    internal::CellType const *findType(internal::CellTypes &types, int channel, Index levelFace,
+    Index getOwnFace(Index face, int channel) const;
+    FarExt::CallStatus checkCrowd(Index face, int channel, Index ownFace) const;
+    internal::CellType const *findType(internal::CellTypes &types, int channel, Index ownFace,
                                        Index face, FarExt::Interpolation interpolation,
                                        std::vector<Index> &points,
                                        FarExt::CallStatus &status) const;
@@ -308,6 +317,7 @@ private:
 
     FarExt::TopologyRefiner const &_refiner;
     FarExt::TopologyLevel const _level;
+    FarExt::SurfaceFaces const _faces;
     int const _numRefinements; // of the refiner, when the factory was made
     Options const _options;
     std::shared_ptr<internal::TypeCache> const _cache;

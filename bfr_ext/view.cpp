@@ -605,9 +605,11 @@ template <typename REAL>
 CellForest View::makeForest(SurfaceFactory const &factory, ViewBounds *bounds,
                             REAL const *meshPoints, std::ptrdiff_t stride,
                             CellForest const *previous, Counts *counts) const {
-    using FarExt::internal::Level;
-    FarExt::TopologyLevel const base = factory.GetLevel();
-    Level const &level = factory.GetLevel().GetLevel();
+    FarExt::SurfaceFaces const &faces = factory.GetFaces();
+    // Diagonals between surface faces are infinitely sharp.
+    auto const isInfSharp = [&](Index edge) {
+        return edge >= factory.GetLevel().GetNumEdges() || factory.GetLevel().IsEdgeInfSharp(edge);
+    };
     CellForest forest(factory.GetMesh());
     forest._plans = bounds ? bounds->_plans : nullptr;
     bool const hasPrevious = previous && previous->GetNumFaces() == forest.GetNumFaces();
@@ -643,12 +645,11 @@ CellForest View::makeForest(SurfaceFactory const &factory, ViewBounds *bounds,
                 if (bounds) {
                     bounds->trim(face, memory);
                 }
-                for (int local = 0; local < level.GetFaceSize(face); ++local) {
-                    Index const edge = level.faceEdges[level.faceFirstCorner[face] + local];
-                    bool const isReversed = forest.isReversed(face, local);
+                for (int local = 0; local < faces.GetShape(face).size; ++local) {
+                    auto const [edge, isReversed] = faces.GetEdge(face, local);
                     // The first of its faces that has a surface makes an edge, since holes have none.
-                    if (!base.IsEdgeInfSharp(edge) ||
-                        (isReversed && factory.FaceHasLimitSurface(level.edgeFaces[edge][0])) ||
+                    if (!isInfSharp(edge) ||
+                        (isReversed && factory.FaceHasLimitSurface(faces.GetSide(edge, 0).face)) ||
                         !state.surface.Init(face)) {
                         continue;
                     }

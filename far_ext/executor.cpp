@@ -12,7 +12,7 @@ namespace {
 
 std::atomic<Executor *> executorOfAll{nullptr}; // null: the default one
 
-// Of the calling thread.
+// The choice of the calling thread.
 thread_local Executor *chosenExecutor = nullptr; // null: that of all
 thread_local int chosenNumThreads = 0;           // 0: that of the executor
 

@@ -34,7 +34,6 @@ Point middle(Point a, Point b) { return 0.5 * (a + b); }
 struct Polygon {
     std::vector<Point> corners;
     bool isHalf;
-    std::optional<Point> middleOfDiagonal = {}; // the first side, where it is bent there
 
     Point GetCorner(std::size_t i) const { return corners[i % corners.size()]; }
     Point GetMiddle(std::size_t side) const {
@@ -44,7 +43,7 @@ struct Polygon {
     // Where children meet, and what they shrink towards.
     Point FindCenter() const {
         if (isHalf) {
-            return middleOfDiagonal ? *middleOfDiagonal : middle(corners[0], corners[1]);
+            return middle(corners[0], corners[1]);
         }
         Point sum = {0, 0};
         for (Point const &corner : corners) {
@@ -125,24 +124,10 @@ Point evaluate(std::array<double, 8> const &q, double s, double t) {
     return (1 - t) * ((1 - s) * at(0) + s * at(1)) + t * ((1 - s) * at(3) + s * at(2));
 }
 
-// Makes of a face its half that has a place: 0 or 1.
-int takeHalf(internal::FaceCells const &cells, Point place, Polygon &cell) {
-    Point const center = cell.FindCenter();
-    // Half 0 lies to the left of the diagonal, which is bent at the centre.
-    auto const isLeft = [&](int corner, double sign) {
-        return sign * cross(cell.corners[std::size_t(corner)] - center, place - center) >= 0;
-    };
-    bool const isBehindEnd = isLeft(cells.diagonalEnd, 1);
-    bool const isBeforeStart = isLeft(kDiagonalStart, -1);
-    bool const isConvex = 2 * cells.diagonalEnd >= cells.faceSize;
-    bool const isFirst = isConvex ? isBehindEnd && isBeforeStart : isBehindEnd || isBeforeStart;
-    int const half = isFirst ? 0 : 1;
-    Polygon result = {{}, true, center};
-    for (int i = 0; i < cells.GetNumCorners(half); ++i) {
-        result.corners.push_back(cell.corners[std::size_t(cells.GetLocal(half, i))]);
-    }
-    cell = std::move(result);
-    return half;
+// The half of a hexagon that has a place: half 0 lies to the left of the diagonal.
+int findHalf(Polygon const &hexagon, Point place) {
+    Point const center = hexagon.FindCenter();
+    return cross(hexagon.corners[kDiagonalEnd] - center, place - center) >= 0 ? 0 : 1;
 }
 
 // Newton's method: the quadrilaterals are convex, and not far from parallelograms.
@@ -178,9 +163,11 @@ public:
         for (int depth = cells.GetFirstLevel(); depth <= cells.GetLastLevel(); ++depth) {
             addPatches(depth);
         }
-        Index const numFaces = _mesh.levels[std::size_t(_surfaceLevel)].numFaces;
-        for (Index face = 0; face < numFaces; ++face) {
-            _map._roots.push_back(makeNode(_surfaceLevel, {face, 0}, true));
+        SurfaceFaces const faces(_mesh.levels[std::size_t(_surfaceLevel)]);
+        for (Index face = 0; face < faces.GetNumFaces(); ++face) {
+            auto const [levelFace, half] = faces.GetLevelFace(face);
+            _map._roots.push_back(
+                makeNode(_surfaceLevel, {levelFace, half}, !faces.IsHalfOfCut(face)));
         }
     }
 
@@ -225,13 +212,6 @@ private:
             add({polygon.corners[0], polygon.corners[1], polygon.corners[2], polygon.corners[3]});
             return;
         }
-        if (isWhole) {
-            Polygon face = {{}, false};
-            for (int i = 0; i < size; ++i) {
-                face.corners.push_back({uv[2 * std::size_t(i)], uv[2 * std::size_t(i) + 1]});
-            }
-            polygon.middleOfDiagonal = face.FindCenter();
-        }
         Point const center = polygon.FindCenterOfKites();
         for (std::size_t i = 0; i < polygon.corners.size(); ++i) {
             Point const corner = polygon.corners[i];
@@ -240,11 +220,11 @@ private:
         }
     }
 
-    // A node of a cell, whole or one half of a hexagon.
+    // A node of a cell, whole or one half of a face.
     Node makeNode(int depth, Cell cell, bool isWhole) {
         Level const &level = _mesh.levels[std::size_t(depth)];
         int const size = level.GetFaceSize(cell.face);
-        bool const isCut = HasHalves(size) && !isWhole;
+        bool const isCut = level.HasFaceHalves(cell.face) && !isWhole;
         Node node = {Far::INDEX_INVALID, {Far::INDEX_INVALID, Far::INDEX_INVALID}};
         bool const hasPatches = depth >= _cells.GetFirstLevel() &&
                                 (_cells.HasCell(depth, cell.face, isCut ? cell.half : 0) ||
@@ -259,7 +239,7 @@ private:
         std::vector<Node> children = {makeNode(depth + 1, cell, isWhole)};
         for (int local = 0; local < size; ++local) {
             bool const isLong = level.IsHalfFace(cell.face) && local == kHalfFaceLongEdge;
-            if (isLong || (isCut && GetHalfOfEdge(local) != cell.half)) {
+            if (isLong || (isCut && level.GetHalfOfFaceEdge(cell.face, local) != cell.half)) {
                 continue; // of half faces the border, and what the other half has
             }
             Index const edge = level.faceEdges[level.faceFirstCorner[cell.face] + local];
@@ -289,11 +269,10 @@ PatchMap::PatchMap(TopologyRefiner const &refiner, PatchTableFactory::Options op
     if (!internal::Report(internal::FindPatchCells(refiner, options, cells), status)) {
         return;
     }
-    Level const &surface =
-        refiner.GetLevel(refiner.GetHexSchemeOptions().GetSurfaceLevel()).GetLevel();
-    for (Index face = 0; face < surface.numFaces; ++face) {
-        _faces.push_back({internal::GetFaceShape(surface, face),
-                          internal::FindFaceCells(surface, face).diagonalEnd});
+    SurfaceFaces const faces(
+        refiner.GetLevel(refiner.GetHexSchemeOptions().GetSurfaceLevel()).GetLevel());
+    for (Index face = 0; face < faces.GetNumFaces(); ++face) {
+        _shapes.push_back(faces.GetShape(face));
     }
     TreeBuilder(*this, refiner, *cells);
 }
@@ -303,7 +282,7 @@ auto PatchMap::FindPlace(Index face, double u, double v) const -> Place {
     if (face < 0 || face >= GetNumFaces() || !std::isfinite(u) || !std::isfinite(v)) {
         return place;
     }
-    auto const [shape, diagonalEnd] = _faces[std::size_t(face)];
+    FaceShape const shape = _shapes[std::size_t(face)];
     auto const coords =
         internal::FindInPlane(internal::MakeFaceParameterization(shape.size), {u, v}).coords;
     Point const wanted = {coords[0], coords[1]};
@@ -319,11 +298,9 @@ auto PatchMap::FindPlace(Index face, double u, double v) const -> Place {
     }
     // Half cells are not cut, but the faces of surfaces, and others as large as these.
     auto const size = int(cell.corners.size());
-    internal::FaceCells cells = {size, 0, cell.isHalf};
-    if (!cell.isHalf) {
-        cells.diagonalEnd = diagonalEnd;
-    }
-    int const half = cells.IsCut() ? takeHalf(cells, wanted, cell) : 0;
+    internal::FaceCells const cells =
+        cell.isHalf ? internal::FaceCells{size, 0, true} : internal::MakeFaceCells(size);
+    int const half = cells.IsCut() ? findHalf(cell, wanted) : 0;
     if (node.firstPatches[half] == Far::INDEX_INVALID) {
         return place;
     }
@@ -337,7 +314,7 @@ auto PatchMap::FindPlace(Index face, double u, double v) const -> Place {
 
 void PatchMap::GetFacePlace(Place const &place, double *u, double *v) const {
     Point const point = evaluate(GetCoords(place.patch), place.s, place.t);
-    FaceShape const shape = _faces[std::size_t(GetFace(place.patch))].shape;
+    FaceShape const shape = _shapes[std::size_t(GetFace(place.patch))];
     std::array<double, 2> uv = {point.u, point.v};
     auto const parameterization = internal::MakeFaceParameterization(shape.size);
     if (parameterization.HasSubFaces()) {

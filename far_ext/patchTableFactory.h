@@ -167,8 +167,8 @@ public:
 ///     Osd::PatchCoord const coord(FarExt::PatchMap::GetHandle(place.patch), float(place.s), float(place.t));
 /// \endcode
 ///
-/// Faces are those of the *surface level* (HexSchemeOptions::GetSurfaceLevel(): level 0, or 1 behind a first step); (u, v)
-/// are those of Bfr::Parameterization and TopologyLevel::GetFaceSurfaceCoords().  A patch is a quadrilateral in the plane
+/// Faces are the SurfaceFaces of the *surface level* (HexSchemeOptions::GetSurfaceLevel(): level 0, or 1 behind a first
+/// step); (u, v) are those of Bfr::Parameterization and TopologyLevel::GetFaceSurfaceCoords().  A patch is a quadrilateral in the plane
 /// of TopologyLevel::GetFaceBaseCoords(), in which (s, t) are bilinear.
 ///
 /// The map does not refer to the refiner.  Several threads may use it at once.
@@ -192,10 +192,10 @@ public:
 
     /// Patches, as in the table.
     int GetNumPatches() const { return int(_patches.size()); }
-    /// Faces of the surface level.
+    /// Surface faces.
     int GetNumFaces() const { return int(_roots.size()); }
 
-    /// The face of the surface level that a patch lies in.
+    /// The surface face that a patch lies in.
     Index GetFace(Index patch) const { return _patches[std::size_t(patch)].face; }
     /// The face of level 0, as TopologyLevel::GetFaceBaseFace(): of its material, or of its texture.
     Index GetBaseFace(Index patch) const { return _patches[std::size_t(patch)].baseFace; }
@@ -235,14 +235,10 @@ private:
         Index firstChild;
         Index firstPatches[2]; // by half, if the face is cut
     };
-    struct Face {
-        FaceShape shape;
-        int diagonalEnd; // of internal::FaceCells
-    };
     class TreeBuilder;
 
-    std::vector<Face> _faces;
-    std::vector<Node> _roots; // by face
+    std::vector<FaceShape> _shapes; // by face
+    std::vector<Node> _roots;       // by face
     std::vector<Node> _children;
     std::vector<Patch> _patches;
 };

@@ -38,7 +38,7 @@ public:
     Index *GetRowIndices() { return this->_indices.data(); }
 };
 
-// What a table of a selection has of all that is made for it.
+// The rows of a selection's table, out of all rows that are made for it.
 struct KeptRows {
     std::vector<Index> controls;          // control vertices, whose stencils come first
     std::vector<std::vector<Index>> rows; // of the refinement that makes each level, ascending

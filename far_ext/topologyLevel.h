@@ -264,16 +264,17 @@ public:
     ///
     /// \param half  of a face with two base faces, the half that is meant
     /// \param uv    gets u and v of each vertex: of the face or, when it has two base faces, of the
-    ///              four vertices kHexagonHalves[half]
+    ///              half, in the order of GetPlaceInHalves()
     /// \return      false, and \p uv is not written, at levels behind other than hexagonal steps
     bool GetFaceBaseCoords(Index f, int half, float *uv) const;
     /// \copydoc GetFaceBaseCoords(Index, int, float *) const
     bool GetFaceBaseCoords(Index f, int half, double *uv) const;
 
     /// \brief The face of the surface level (HexSchemeOptions::GetSurfaceLevel()) that the face lies
-    /// in: a BfrExt::SurfaceFactory has its surface.  Without a first step that is the base face.
+    /// in, or the half of one that is cut, as numbered by SurfaceFaces: a BfrExt::SurfaceFactory has its surface.  Without a
+    /// first step that is the base face.
     ///
-    /// \param half  0 or 1, as in kHexagonHalves; both are the same for a face in one such face
+    /// \param half  0 or 1, as in GetPlaceInHalves(); both are the same for a face in one such face
     /// \return      INDEX_INVALID before the surface level, and where not all steps behind it are
     ///              hexagonal
     Index GetFaceSurfaceFace(Index f, int half = 0) const;

@@ -257,7 +257,7 @@ private:
     Level &_level;
 };
 
-// What the corners of all faces have, those of left-handed faces the other way round, from their
+// Copies an item for each corner of all faces; in left-handed faces the other way round, from their
 // first corner on.
 void DescriptorReader::copyCorners(Index const *from, Buffer<Index> &to) const {
     to.Resize(_level.numCorners);

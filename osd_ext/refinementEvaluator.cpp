@@ -132,8 +132,8 @@ private:
     bool const _isOfVertices;  // not of face-varying values, nor varying
     std::vector<internal::PreparedRefinement> _refinements; // by level of the parent
 
-    // Of a face-varying channel some of whose values several vertices of its value mesh share: the
-    // value of each, see FarExt::internal::FVarLevel.
+    // For a face-varying channel some of whose values several vertices of its value mesh share: the
+    // value of each vertex, see FarExt::internal::FVarLevel.
     FarExt::internal::Buffer<Index> const *_valuesOfVertices = nullptr;
 
     FarExt::internal::Buffer<float> _controlValues; // by vertex of that value mesh

@@ -86,7 +86,7 @@ private:
         function(_polygons.labels, _result.labels, 1);
     }
 
-    // Of polygons [begin, end), which begin at place.
+    // Writes the triangles of polygons [begin, end), which begin at place.
     template <typename T>
     void write(std::vector<T> const &polygons, std::vector<T> &triangles, int width, Index begin,
                Index end, TrianglePlace const &place) const {

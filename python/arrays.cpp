@@ -16,7 +16,7 @@ std::string nameType(py::handle object) {
                : std::string(py::str(py::type::handle_of(object).attr("__name__")));
 }
 
-/// What numpy makes of an object.  Its own errors, as of rows that differ in length, stay.
+/// Returns the array that numpy makes of an object.  Numpy's own errors, as of rows that differ in length, stay.
 py::array toArray(py::handle object, char const *name) {
     if (object.is_none()) {
         throw py::type_error(std::string(name) + ": an array is needed, not None");
@@ -131,7 +131,7 @@ void checkShape(py::array const &array, char const *name) {
 
 /// How far elements are apart, in bytes.
 py::ssize_t getStride(py::array const &array) {
-    // Of a single element there is no next.
+    // A single element has no next one.
     return array.shape(0) > 1 ? array.strides(0)
                               : (array.ndim() == 2 ? array.shape(1) : 1) * array.itemsize();
 }

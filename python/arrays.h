@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-/// What goes between numpy and the library: arguments are checked here, before the library reads or
+/// Conversions between numpy and the library.  Arguments are checked here, before the library reads or
 /// writes what they refer to.  Each check names the argument in its error.
 namespace OpenSubdivHex::Python {
 

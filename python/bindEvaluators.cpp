@@ -301,7 +301,7 @@ py::array computeNormals(py::object const &du, py::object const &dv, py::object 
                                         : computeNormalsOf<float>(du, dv, normals);
 }
 
-/// What stands for a class of static functions.
+/// Stands for a class of static functions.
 template <class EVALUATOR>
 struct StaticEvaluator {};
 

@@ -115,7 +115,7 @@ auto matchFVar(COUNT getCount, MATCH match) {
     };
 }
 
-/// The same as makeArray for answers of yes or no.
+/// makeArray for answers of yes or no.
 template <typename QUERY>
 auto makeMask(int (TopologyLevel::*size)() const, bool isFull, QUERY query) {
     return [=](Level const &self) {
@@ -136,7 +136,7 @@ py::array_t<int> getBaseFaces(Level const &self, int half) {
     }));
 }
 
-/// That a level has no places in base faces, or in faces of the surface level.
+/// Throws: a level has no places in base faces, or in faces of the surface level.
 [[noreturn]] void throwNoPlaces(TopologyLevel const &level, bool ofSurfaceLevel) {
     throw py::value_error("level " + std::to_string(level.GetDepth()) +
                           (ofSurfaceLevel
@@ -169,16 +169,21 @@ py::array_t<float> getCoords(Level const &self, int half, IS_SPLIT const &isSpli
         auto const none = std::numeric_limits<float>::quiet_NaN();
         std::vector<float> values(2 * std::size_t(level.GetNumFaceVertices()), none);
         float *place = values.data();
+        std::vector<float> ofHalf;
         for (Index f = 0; f < level.GetNumFaces(); ++f) {
             bool const isSplit = isSplitFace(level, f);
-            float ofHalf[8];
-            if (!find(level, f, half, isSplit ? ofHalf : place)) {
+            int const size = level.GetFaceVertices(f).size();
+            int const end = level.GetFaceDiagonalEnd(f);
+            int const numOfHalf = isSplit ? GetHalfSize(half, size, end) : 0;
+            ofHalf.resize(2 * std::size_t(numOfHalf));
+            if (!find(level, f, half, isSplit ? ofHalf.data() : place)) {
                 throwNoPlaces(level, ofSurfaceLevel);
             }
-            for (int i = 0; isSplit && i < 4; ++i) {
-                std::copy_n(ofHalf + 2 * i, 2, place + 2 * kHexagonHalves[half][i]);
+            for (int i = 0; i < numOfHalf; ++i) {
+                std::copy_n(&ofHalf[2 * std::size_t(i)], 2,
+                            place + 2 * GetPlaceInHalves(half, i, end));
             }
-            place += 2 * level.GetFaceVertices(f).size();
+            place += 2 * size;
         }
         return values;
     });
@@ -496,8 +501,8 @@ private:
     OsdExt::DrawOptions _options;
 };
 
-/// What drawn faces have by corner and by face; corners have the shape (corners,), or
-/// (faces, \p width) of faces that have as many; and the separate vertices, where there are such.
+/// Returns the data of drawn faces by corner and by face, and the separate vertices, where there are any.  Data by
+/// corner have the shape (corners,), or (faces, \p width) where all faces have \p width corners.
 py::dict describeFaces(OsdExt::DrawnFaces &&faces, py::ssize_t width, bool isSeparate) {
     auto const byCorner = [width](auto &&values, py::ssize_t numbers) -> py::object {
         using T = std::decay_t<decltype(values[0])>;

@@ -60,7 +60,7 @@ PatchTable createTable(Refiner const &refiner, int isolationLevel, bool generate
         if (!made.table) {
             return;
         }
-        // Those of the table, which lives as long as they do.
+        // The local points are the table's, which lives as long as they do.
         made.localPoints.table =
             StencilTable::Pointer<float>(made.table, made.table->GetLocalPointStencilTable());
         made.localPoints.numSources = topology.GetLevel(0).GetNumVertices();

@@ -199,7 +199,7 @@ struct Description {
 
 /// \brief Takes a number of the type T, \p typeName to Python.
 ///
-/// What pybind11 itself refuses it refuses with all arguments in the message, faces too.
+/// Takes a number.  Where pybind11 refuses one, its message has all arguments, all faces among them.
 template <typename T>
 T takeNumber(py::object const &object, char const *name, char const *typeName) {
     try {

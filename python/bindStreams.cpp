@@ -233,7 +233,7 @@ std::shared_ptr<std::vector<int> const> takeLevels(py::object const &object, cha
     return levels;
 }
 
-/// What patches have besides points: sources of numbers, as a run reads them.
+/// Data of patches besides points: sources of numbers, as a run reads them.
 template <typename REAL>
 struct StreamSources {
     using Stream = BfrExt::PatchStream<REAL>;

@@ -18,7 +18,8 @@ using BfrExt::LevelTessellation;
 using Points = py::array_t<double>;
 using PointDescriptor = BfrExt::Surface<double>::PointDescriptor;
 
-FaceTessellation makeTessellation(int faceSize, py::object const &levels, int facetSize) {
+FaceTessellation makeTessellation(int faceSize, py::object const &levels, int facetSize,
+                                  bool isHalf) {
     if (faceSize < 3) {
         throw py::value_error("face_size: " + std::to_string(faceSize) + " is less than 3");
     }
@@ -43,7 +44,7 @@ FaceTessellation makeTessellation(int faceSize, py::object const &levels, int fa
     CheckFacetSize(facetSize);
     py::gil_scoped_release const release;
     return FaceTessellation(
-        LevelTessellation(BfrExt::Parameterization(faceSize), count, numbers.data(),
+        LevelTessellation(BfrExt::Parameterization({faceSize, isHalf}), count, numbers.data(),
                           LevelTessellation::Options().SetFacetSize(facetSize)));
 }
 
@@ -70,6 +71,7 @@ public:
         : _surface(std::move(surface)), _numMeshPoints(numMeshPoints) {}
 
     int GetFaceSize() const { return _surface.GetFaceSize(); }
+    bool IsHalf() const { return _surface.GetFaceShape().isHalf; }
     py::array_t<int> GetControlPoints() const {
         std::vector<int> indices(std::size_t(_surface.GetNumControlPoints()));
         _surface.GetControlPointIndices(indices.data());
@@ -140,10 +142,12 @@ private:
         std::vector<double> const places = isPattern ? std::vector<double>() : takePlaces(uv);
         LevelTessellation const *const pattern =
             isPattern ? &uv.cast<FaceTessellation const &>().Get() : nullptr;
-        if (pattern && pattern->GetFaceSize() != _surface.GetFaceSize()) {
-            throw py::value_error(
-                "uv: a tessellation of " + std::to_string(pattern->GetFaceSize()) +
-                " edges, but the face has " + std::to_string(_surface.GetFaceSize()));
+        if (pattern && pattern->GetFaceShape() != _surface.GetFaceShape()) {
+            auto const getName = [](FarExt::FaceShape shape) {
+                return std::to_string(shape.size) + " edges" + (shape.isHalf ? ", a half" : "");
+            };
+            throw py::value_error("uv: a tessellation of " + getName(pattern->GetFaceShape()) +
+                                  ", but the face has " + getName(_surface.GetFaceShape()));
         }
         auto const numPlaces =
             pattern ? py::ssize_t(pattern->GetNumCoords()) : py::ssize_t(places.size() / 2);
@@ -196,6 +200,45 @@ bool hasLimitSurface(FaceSurfaceFactory const &self, int face) {
     return self.Read([&](BfrExt::SurfaceFactory const &factory) {
         FarExt::CallStatus ignored;
         return factory.FaceHasLimitSurface(face, &ignored);
+    });
+}
+
+py::tuple getLevelFaces(FaceSurfaceFactory const &self) {
+    std::vector<int> faces;
+    std::vector<int> halves;
+    self.Read([&](BfrExt::SurfaceFactory const &factory) {
+        for (int face = 0; face < factory.GetNumFaces(); ++face) {
+            auto const [levelFace, half] = factory.GetFaces().GetLevelFace(face);
+            faces.push_back(levelFace);
+            halves.push_back(half);
+        }
+    });
+    return py::make_tuple(TakeOver(std::move(faces)), TakeOver(std::move(halves)));
+}
+
+// What get(faces, local) gives for the vertices or edges of a face.
+template <typename GET>
+py::array_t<int> listAround(FaceSurfaceFactory const &self, int face, GET const &get) {
+    CheckIndex(face, self.GetNumFaces(), "face");
+    return TakeOver(self.Read([&](BfrExt::SurfaceFactory const &factory) {
+        FarExt::SurfaceFaces const &faces = factory.GetFaces();
+        std::vector<int> result;
+        for (int local = 0; local < faces.GetShape(face).size; ++local) {
+            result.push_back(get(faces, local));
+        }
+        return result;
+    }));
+}
+
+py::array_t<int> getFaceVertices(FaceSurfaceFactory const &self, int face) {
+    return listAround(self, face, [face](FarExt::SurfaceFaces const &faces, int local) {
+        return faces.GetVertex(face, local);
+    });
+}
+
+py::array_t<int> getFaceEdges(FaceSurfaceFactory const &self, int face) {
+    return listAround(self, face, [face](FarExt::SurfaceFaces const &faces, int local) {
+        return faces.GetEdge(face, local).edge;
     });
 }
 
@@ -311,7 +354,7 @@ void CheckFacetSize(int size) {
 void BindSurfaces(py::module_ &module) {
     py::class_<FaceTessellation>(
         module, "LevelTessellation",
-        "LevelTessellation(face_size, levels, facet_size=3)\n\n"
+        "LevelTessellation(face_size, levels, facet_size=3, is_half=False)\n\n"
         "A base face cut into facets.  Two faces are watertight if they have the same level for "
         "their\n"
         "common edge.\n\n"
@@ -322,9 +365,10 @@ void BindSurfaces(py::module_ &module) {
         "        to the next; or one for each edge, then one for the inside\n"
         "    facet_size: 3: triangles; 4: quads where all cells are quads, else triangles padded "
         "with\n"
-        "        -1; 0: polygons")
+        "        -1; 0: polygons\n"
+        "    is_half: whether the face is half a polygon (Surface.is_half)")
         .def(py::init(&makeTessellation), py::arg("face_size"), py::arg("levels"),
-             py::arg("facet_size") = 3)
+             py::arg("facet_size") = 3, py::arg("is_half") = false)
         .def(py::pickle(
             [](FaceTessellation const &self) {
                 std::vector<int> levels = self.GetLevels();
@@ -333,14 +377,19 @@ void BindSurfaces(py::module_ &module) {
                                          "a face, cannot be pickled");
                 }
                 return py::make_tuple(self.Get().GetFaceSize(), std::move(levels),
-                                      self.Get().GetFacetSize());
+                                      self.Get().GetFacetSize(), self.Get().GetFaceShape().isHalf);
             },
             [](py::tuple const &state) {
-                return makeTessellation(state[0].cast<int>(), state[1], state[2].cast<int>());
+                return makeTessellation(state[0].cast<int>(), state[1], state[2].cast<int>(),
+                                        state[3].cast<bool>());
             }))
         .def_property_readonly(
             "face_size", [](FaceTessellation const &self) { return self.Get().GetFaceSize(); },
             "Vertices of the face.")
+        .def_property_readonly(
+            "is_half",
+            [](FaceTessellation const &self) { return self.Get().GetFaceShape().isHalf; },
+            "Whether the face is half a polygon, cut along its edge 0.")
         .def_property_readonly(
             "levels", &FaceTessellation::GetLevels,
             "Levels of the edges, then the level of the inside; empty for a face of a CellForest.")
@@ -371,6 +420,8 @@ void BindSurfaces(py::module_ &module) {
         "Points of a LevelTessellation, and stencils, are exact.  Points at (u, v) lie on bicubic\n"
         "patches, some millionths of the mesh's size from the surface.")
         .def_property_readonly("face_size", &FaceSurface::GetFaceSize, "Vertices of the face.")
+        .def_property_readonly("is_half", &FaceSurface::IsHalf,
+                               "Whether the face is half a polygon, cut along its edge 0.")
         .def_property_readonly(
             "control_points", &FaceSurface::GetControlPoints,
             "int32: the points of the mesh that the surface depends on; the face's own come first.")
@@ -407,9 +458,32 @@ void BindSurfaces(py::module_ &module) {
         "level 1\n"
         "with full topology before.  After the refiner was refined again, the factory raises\n"
         "RuntimeError.\n\n"
+        "A face of the level that an infinitely sharp crease crosses is two faces here, half a "
+        "polygon each,\n"
+        "with normals of its own along the crease: half 0 has the number of the face, and halves 1 "
+        "follow\n"
+        "all faces of the level (get_level_faces()).\n\n"
         "Raises StatusError if level 1 is missing, and for levels that no hexagonal step made.")
         .def(py::init<std::shared_ptr<Refiner>>(), py::arg("refiner").none(false))
         .def_property_readonly("num_faces", &FaceSurfaceFactory::GetNumFaces, "Number of faces.")
+        .def_property_readonly("num_edges", &FaceSurfaceFactory::GetNumEdges,
+                               "Number of edges, diagonals between halves included.")
+        .def("get_level_faces", &getLevelFaces,
+             "get_level_faces()\n\n"
+             "Returns (faces, halves), int32, shape (num_faces,): the face of the level, and which "
+             "half of\n"
+             "it where it is cut, else 0.")
+        .def("get_face_vertices", &getFaceVertices,
+             "get_face_vertices(face)\n\n"
+             "int32, shape (n,): the vertices of a face; (u, v) of vertex 0 are (0, 0).",
+             py::arg("face"))
+        .def(
+            "get_face_edges", &getFaceEdges,
+            "get_face_edges(face)\n\n"
+            "int32, shape (n,): the edges of a face.  Edge i joins its vertices i and i + 1.  The "
+            "edge\n"
+            "between two halves of a face, edge 0 of both, has a number behind those of the level.",
+            py::arg("face"))
         .def("has_limit_surface", &hasLimitSurface,
              "has_limit_surface(face)\n\n"
              "False for holes, for faces at a boundary with vtx_boundary_interpolation 'none', and "

@@ -120,7 +120,7 @@ public:
         innermost = this;
     }
 
-    /// What with statements cannot do, generators can: end scopes out of order.
+    /// Generators, unlike with statements, can end scopes out of order.
     void Exit() {
         if (innermost != this) {
             throw std::runtime_error("scopes end in the thread that entered them, the last first");

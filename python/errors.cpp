@@ -5,7 +5,7 @@ namespace OpenSubdivHex::Python {
 
 namespace {
 
-// Of the module, which the interpreter keeps.
+// Exceptions of the module, which the interpreter keeps.
 PyObject *statusError = nullptr;
 PyObject *statusWarning = nullptr;
 

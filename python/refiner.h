@@ -44,7 +44,7 @@ struct Refinement {
     int level = 0;
     bool hasFullTopologyInLastLevel = false;
     std::vector<int> faceLabels; ///< of a uniform one
-    /// Of a coplanar one: floats or, if isDouble, doubles; else empty.
+    /// Positions at rest of a coplanar refiner: floats or, if isDouble, doubles; else empty.
     std::vector<double> restPositions;
     bool isDouble = false;
     double angleTolerance = 0;
@@ -174,7 +174,7 @@ public:
         });
     }
 
-    /// The same for queries that need more than face-vertices.
+    /// Read() for queries that need more than face-vertices.
     template <typename FUNCTION>
     auto ReadFull(FUNCTION const &function) const {
         return Read([&](FarExt::TopologyLevel const &level) {

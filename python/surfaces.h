@@ -87,7 +87,7 @@ public:
                 _numRefinements = base.GetNumRefinements();
                 _depth = _factory->GetLevel().GetDepth();
                 _numFaces = _factory->GetNumFaces();
-                _numEdges = _factory->GetLevel().GetNumEdges();
+                _numEdges = _factory->GetFaces().GetNumEdges();
                 _numVertices = _factory->GetLevel().GetNumVertices();
                 _numFVarChannels = _factory->GetNumFVarChannels();
             }

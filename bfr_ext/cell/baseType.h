@@ -22,10 +22,6 @@ public:
     FaceShape GetShape(int size) const { return _type ? _type->GetShape() : FaceShape(size); }
     /// Whether something sharp is near.
     bool IsSharp() const { return _type && _type->IsSharp(); }
-    /// The cells that a face of \p size sides is for its patches.
-    FarExt::internal::FaceCells GetFaceCells(int size) const {
-        return _type ? _type->GetFaceCells() : FarExt::internal::MakeFaceCells(size);
-    }
     /// The type of a plain face outside lattices, whose CellType need not be made; null for other faces.
     PlainFaceType const *GetPlain() const {
         return _plain && !_plain->IsInLattice() ? _plain : nullptr;

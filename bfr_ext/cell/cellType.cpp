@@ -119,16 +119,19 @@ struct Projection {
 
 std::size_t GetCellHeapSize(CellPatch const &cell) {
     LimitPatch const &patch = cell.patch;
-    return GetHeapSizes(cell.locals, cell.corners, patch.sources, patch.faceSizes, patch.faceVerts,
-                        patch.otherCorners, patch.edgeSharpness, patch.diagonalSharpness,
-                        patch.vertSharpness, patch.signature);
+    std::size_t size = GetHeapSizes(
+        cell.locals, cell.corners, patch.sources, patch.faceSizes, patch.faceVerts,
+        patch.otherCorners, patch.edgeSharpness, patch.diagonalSharpness, patch.vertSharpness,
+        patch.sectorCorners, patch.irregularCorners, patch.lineRowCorners, patch.signature);
+    QuadCorners::ForEachArray(patch.quadCorners,
+                              [&size](auto const &array) { size += GetHeapSizes(array); });
+    return size;
 }
 
 CellType::CellType(CellTypes &types, CellPatch cell, CellRules const &rules)
-    : _types(types), _cell(std::move(cell)), _faceCells(FarExt::internal::FindCellsOfCell(_cell)),
-      _numPoints(int(_cell.patch.sources.size())), _isInLattice(isInLattice(_cell.patch)),
-      _isSharp(isSharp(_cell.patch)), _rules(rules), _borderItems(types.GetMemory()),
-      _patterns(types.GetMemory()) {}
+    : _types(types), _cell(std::move(cell)), _numPoints(int(_cell.patch.sources.size())),
+      _isInLattice(isInLattice(_cell.patch)), _isSharp(isSharp(_cell.patch)), _rules(rules),
+      _borderItems(types.GetMemory()), _patterns(types.GetMemory()) {}
 
 std::vector<CellType::Child> const &CellType::GetChildren() const {
     std::call_once(_onceChildren, [&] {
@@ -341,7 +344,8 @@ std::vector<double> CellType::FindPatchPoints(PatchAges const &ages) const {
     if (!FindCellPatchPoints(_cell, _rules.sdcOptions, _rules.hexSchemeOptions,
                              _rules.interpolation, ages, rows)
              .IsOk()) {
-        rows.assign(std::size_t(_faceCells.GetNumPatches()) * std::size_t(kNumPatchPoints) *
+        FaceCells const cells = MakeFaceCells({GetNumCorners(), _cell.kind != CellKind::Whole});
+        rows.assign(std::size_t(cells.GetNumPatches()) * std::size_t(kNumPatchPoints) *
                         std::size_t(GetNumPoints()),
                     std::numeric_limits<double>::quiet_NaN());
     }

@@ -75,8 +75,6 @@ public:
     bool IsLongEdge() const { return _cell.kind == FarExt::internal::CellKind::LongEdge; }
     bool IsVertex() const { return _cell.kind == FarExt::internal::CellKind::Vertex; }
     int GetNumCorners() const { return _cell.GetNumCorners(); }
-    /// The cells that a base face is for its patches.
-    FarExt::internal::FaceCells const &GetFaceCells() const { return _faceCells; }
     int GetNumPoints() const { return _numPoints; }
 
     /// \brief Whether the patch is a piece of a regular lattice of triangles, quads or hexagons, without
@@ -167,7 +165,6 @@ private:
 
     CellTypes &_types;
     mutable FarExt::internal::CellPatch _cell; // of vertices, without a patch once it is not needed
-    FarExt::internal::FaceCells const _faceCells; // of a whole cell
     int const _numPoints;
     bool const _isInLattice;
     bool const _isSharp;

@@ -19,6 +19,8 @@
 
 namespace OpenSubdivHex::BfrExt::internal {
 
+using FarExt::internal::FaceCells;
+using FarExt::internal::MakeFaceCells;
 using FarExt::internal::PatchAges;
 
 namespace {
@@ -165,13 +167,13 @@ private:
 template <typename REAL>
 class PointMaker {
 public:
-    PointMaker(RefinedCells &cells, FaceCells const &face, int level, PatchSummer<REAL> &summer)
-        : _cells(cells), _face(face), _level(level), _summer(summer) {}
+    PointMaker(RefinedCells &cells, int level, PatchSummer<REAL> &summer)
+        : _cells(cells), _level(level), _summer(summer) {}
 
     void Make(std::size_t cell, CornerAges const &ages) {
         FaceShape const shape = _cells[cell].GetShape();
         int const numLevels = _level - _cells[cell].GetLevel();
-        if (!_summer.SkipUnlessWanted(shape.size > 0 ? GetNumFacePatches(_face, numLevels)
+        if (!_summer.SkipUnlessWanted(shape.size > 0 ? GetNumFacePatches(shape, numLevels)
                                                      : getNumHalfPatches(numLevels))) {
             return;
         }
@@ -199,7 +201,6 @@ private:
     }
 
     RefinedCells &_cells;
-    FaceCells const _face;
     int const _level;
     PatchSummer<REAL> &_summer;
     std::vector<REAL> _values;
@@ -232,16 +233,10 @@ Quadrilateral findInKite(Pair const &coords, double m) {
 
 } // namespace
 
-namespace {
-
-FaceShape getShape(FaceCells const &face) { return {face.faceSize, face.isHalf}; }
-
-} // namespace
-
-int GetNumFacePatches(FaceCells const &face, int level) {
+int GetNumFacePatches(FaceShape shape, int level) {
     // A sector has 1 + 4 + 16 ... half cells.
-    return face.GetNumPatches() +
-           getShape(face).GetNumSectors() * (getNumHalfPatches(level) - 1) / 3;
+    return MakeFaceCells(shape).GetNumPatches() +
+           shape.GetNumSectors() * (getNumHalfPatches(level) - 1) / 3;
 }
 
 namespace {
@@ -327,21 +322,19 @@ Quadrilateral findInHalf(int numCorners, int side, Pair const &coords, int &kite
 
 // From the coordinates in the sector of a whole cell to those that the shape of its patches is given by: the
 // number of the patch among those of the cell, where the place is in it, and the map between them.
-Quadrilateral findInWhole(FaceCells const &face, int sector, Pair const &coords, int &patch,
+Quadrilateral findInWhole(FaceShape shape, int sector, Pair const &coords, int &patch,
                           Linear &linear) {
-    int const size = face.faceSize;
+    int const size = shape.size;
+    FaceCells const face = MakeFaceCells(shape);
     int const half = face.GetHalfOfEdge(sector);
-    if (face.AreHalves() && face.HasKites(half)) {
-        Quadrilateral const in =
-            findInHalf(face.GetNumCorners(half), face.GetSideOfEdge(sector), coords, patch, linear);
-        patch += face.IsCut() && half == 1 ? face.GetNumPatches(0) : 0;
-        return in;
+    if (shape.isHalf && face.HasKites(half)) {
+        return findInHalf(size, sector, coords, patch, linear);
     }
     auto const map = [&](Pair const &toStart, Pair const &toEnd, Pair const &center) {
         linear = {{{toStart[0], toEnd[0]}, {toStart[1], toEnd[1]}}};
         return CellMap{{linear[0], linear[1]}, center}.Apply(coords);
     };
-    if (size == 4 && !face.isHalf) {
+    if (size == 4 && !shape.isHalf) {
         constexpr Pair kCorners[4] = {{-0.5, -0.5}, {0.5, -0.5}, {0.5, 0.5}, {-0.5, 0.5}};
         Pair const st = map(kCorners[sector], kCorners[(sector + 1) % 4], {0.5, 0.5});
         return {st[0], st[1], {{1, 0}, {0, 1}}, {0, 0}};
@@ -387,9 +380,7 @@ struct ByUv {
 
 } // namespace
 
-PatchPlace FindPatchPlace(BfrPlace const &ofFace, FaceCells const &face, int level,
-                          int numDerivatives) {
-    int const size = face.faceSize;
+PatchPlace FindPatchPlace(BfrPlace const &ofFace, FaceShape shape, int level, int numDerivatives) {
     int const sector = ofFace.point.sector;
     Pair coords = ofFace.point.coords;
     int left = level;
@@ -403,12 +394,12 @@ PatchPlace FindPatchPlace(BfrPlace const &ofFace, FaceCells const &face, int lev
     // Each step halves cells, but that from the sector to the half cell, which is part of the map.
     int const numHalvings = left == 0 ? level : level - 1;
     if (left == 0) {
-        in = findInWhole(face, sector, coords, place.patch, linear);
+        in = findInWhole(shape, sector, coords, place.patch, linear);
     } else {
         --left;
         coords = HalfCell::kFromSector.Apply(coords);
-        place.patch = GetNumFacePatches(face, left) +
-                      (sector - getShape(face).GetFirstSector()) * getNumHalfPatches(left);
+        place.patch = GetNumFacePatches(shape, left) +
+                      (sector - shape.GetFirstSector()) * getNumHalfPatches(left);
         int turn = 0;
         while (left > 0) {
             --left;
@@ -425,7 +416,7 @@ PatchPlace FindPatchPlace(BfrPlace const &ofFace, FaceCells const &face, int lev
     if (numDerivatives == 0) {
         return place;
     }
-    ByUv const cell(linear, double(1 << numHalvings), ofFace, size > 4);
+    ByUv const cell(linear, double(1 << numHalvings), ofFace, shape.size > 4);
     double const factor = 1 / (in.bySt[0][0] * in.bySt[1][1] - in.bySt[0][1] * in.bySt[1][0]);
     auto const solve = [&](double first, double second) {
         return Pair{(in.bySt[1][1] * first - in.bySt[0][1] * second) * factor,
@@ -454,7 +445,7 @@ namespace {
 
 // From the control points of a face that few are alike.
 template <typename TYPE, typename REAL>
-void makePoints(TYPE const &type, FaceCells const &face, int level, REAL const *control, int size,
+void makePoints(TYPE const &type, int faceSize, int level, REAL const *control, int size,
                 std::ptrdiff_t stride, PatchSummer<REAL> &summer) {
     // Their memory is kept for the next face.
     static thread_local RefinedCells cells;
@@ -465,8 +456,8 @@ void makePoints(TYPE const &type, FaceCells const &face, int level, REAL const *
         packed.insert(packed.end(), point, point + size);
     }
     cells.SetBase(type, packed.data(), size);
-    PointMaker<REAL>(cells, face, level, summer)
-        .Make(RefinedCells::kBase, CornerAges(std::size_t(face.faceSize), -1));
+    PointMaker<REAL>(cells, level, summer)
+        .Make(RefinedCells::kBase, CornerAges(std::size_t(faceSize), -1));
 }
 
 } // namespace
@@ -477,12 +468,12 @@ void MakeFacePatchPoints(BaseType const &type, int faceSize, int level, REAL con
                          REAL *points) {
     PatchSummer<REAL> summer(wanted, size, stride, points);
     if (PlainFaceType const *const plain = type.GetPlain()) {
-        makePoints(*plain, type.GetFaceCells(faceSize), level, control, size, stride, summer);
+        makePoints(*plain, faceSize, level, control, size, stride, summer);
     } else if (type.IsInLattice()) {
         summer.SumUp(getMatrix<REAL>(*type, 0, CornerAges(std::size_t(faceSize), -1), level),
                      control, stride);
     } else {
-        makePoints(*type, type.GetFaceCells(faceSize), level, control, size, stride, summer);
+        makePoints(*type, faceSize, level, control, size, stride, summer);
     }
 }
 

@@ -19,14 +19,10 @@ using FarExt::internal::kNumPatchPoints;
 inline constexpr int kFirstPatchLevel = 2;
 inline constexpr int kLastPatchLevel = 6;
 
-using FarExt::internal::FaceCells;
-
 /// \brief How many Gregory patches the cells of a level are in a base face.
 ///
 /// They are in the order of the cells: depth first, with children in the order of RefineCell().
-///
-/// \param face  the cells that it is itself
-int GetNumFacePatches(FaceCells const &face, int level);
+int GetNumFacePatches(FaceShape shape, int level);
 
 /// A place in one of the patches of a face; its derivatives are there as far as they were asked for.
 struct PatchPlace {
@@ -38,8 +34,7 @@ struct PatchPlace {
 };
 
 /// Finds the patch of a place of a base face, with derivatives as far as \p numDerivatives asks: 0, 1 or 2.
-PatchPlace FindPatchPlace(BfrPlace const &ofFace, FaceCells const &face, int level,
-                          int numDerivatives);
+PatchPlace FindPatchPlace(BfrPlace const &ofFace, FaceShape shape, int level, int numDerivatives);
 
 /// \brief Makes the points of patches of a face from its control points.
 ///

@@ -74,12 +74,16 @@ int findSide(Level const &level, Index vert, Index face, int half) {
 
 } // namespace
 
-void GatherBaseCell(Level const &level, Index face, Sdc::Options sdcOptions, CellPatch &cell) {
-    cell.kind = level.IsHalfFace(face) ? CellKind::HalfPolygon : CellKind::Whole;
-    cell.locals.resize(std::size_t(level.GetFaceSize(face)));
-    std::iota(cell.locals.begin(), cell.locals.end(), 0);
-    LimitPatchGatherer gatherer(level, sdcOptions, kMaskOfBase);
-    gather(gatherer, level, face, cell);
+void GatherBaseCell(SurfaceFaces const &faces, Index face, Sdc::Options sdcOptions,
+                    CellPatch &cell) {
+    FaceShape const shape = faces.GetShape(face);
+    cell.kind = shape.isHalf ? CellKind::HalfPolygon : CellKind::Whole;
+    cell.locals.clear();
+    for (int i = 0; i < shape.size; ++i) {
+        cell.locals.push_back(faces.GetPlace(face, i));
+    }
+    LimitPatchGatherer gatherer(faces.GetLevel(), sdcOptions, kMaskOfBase);
+    gather(gatherer, faces.GetLevel(), faces.GetLevelFace(face).face, cell);
 }
 
 CellPatch MakePlainBaseCell(std::vector<int> faceSizes, std::vector<Index> faceVerts, int numInner,
@@ -125,15 +129,17 @@ CellPatch MakePlainBaseCell(std::vector<int> faceSizes, std::vector<Index> faceV
     return cell;
 }
 
-void FindBaseCellTurns(Level const &level, Index face, int *turns) {
-    Index const first = level.faceFirstCorner[face];
-    int const size = level.GetFaceSize(face);
+void FindBaseCellTurns(SurfaceFaces const &faces, Index face, int *turns) {
+    Level const &level = faces.GetLevel();
+    Index const first = level.faceFirstCorner[faces.GetLevelFace(face).face];
+    int const size = faces.GetShape(face).size;
     for (int i = 0; i < size; ++i) {
-        turns[i] = isFirstSide(level, face, i) ? 0 : 1;
+        turns[i] = faces.GetEdge(face, i).isReversed ? 1 : 0;
         turns[size + i] = 0;
-        ForEachFan(level, level.faceVerts[first + i], [&](VertexFan const &fan) {
+        Index const corner = first + faces.GetPlace(face, i);
+        ForEachFan(level, level.faceVerts[corner], [&](VertexFan const &fan) {
             for (Index k = fan.begin; k < fan.end; ++k) {
-                if (level.GetVertexCorner(k) == first + i) {
+                if (level.GetVertexCorner(k) == corner) {
                     turns[size + i] = int(k - fan.begin);
                 }
             }
@@ -150,18 +156,28 @@ std::vector<CellPatch> GatherBorder(CellPatch const &baseCell, int const *turns,
     int const size = baseCell.GetNumCorners();
     std::vector<CellPatch> border;
     for (int i = 0; i < size; ++i) {
-        Index const edge = level.faceEdges[i];
-        int const side = isFirstSide(level, 0, i) == (turns[i] == 1) ? 1 : 0;
-        border.push_back(
-            {level.IsSharpBoundaryB(edge) ? CellKind::LongEdge : CellKind::Edge, {}, {}, {}});
-        gatherEdge(gatherer, level, edge, side, border.back());
+        bool const isLong = i == 0 && baseCell.kind == CellKind::HalfPolygon;
+        border.push_back({isLong ? CellKind::LongEdge : CellKind::Edge, {}, {}, {}});
+        int const local = baseCell.locals[std::size_t(i)];
+        if (isLong && !level.IsHalfFace(0)) {
+            // A diagonal, from its start on.
+            border.back().locals = {local, baseCell.locals[1]};
+            if (turns[i] == 1) {
+                std::swap(border.back().locals[0], border.back().locals[1]);
+            }
+            gather(gatherer, level, 0, border.back());
+            continue;
+        }
+        int const side = isFirstSide(level, 0, local) == (turns[i] == 1) ? 1 : 0;
+        gatherEdge(gatherer, level, level.faceEdges[local], side, border.back());
     }
     for (int i = 0; i < size; ++i) {
         border.push_back({CellKind::Vertex, {}, {}, {}});
-        ForEachFan(level, level.faceVerts[i], [&](VertexFan const &fan) {
+        int const local = baseCell.locals[std::size_t(i)];
+        ForEachFan(level, level.faceVerts[local], [&](VertexFan const &fan) {
             int const numFaces = int(fan.end - fan.begin);
             for (int k = 0; k < numFaces; ++k) {
-                if (level.GetVertexCorner(fan.begin + k) == i) {
+                if (level.GetVertexCorner(fan.begin + k) == local) {
                     int const turn = turns[size + i];
                     Index const place = fan.begin + (k + numFaces - turn) % numFaces;
                     border.back().locals = {level.vertFaceLocals[place]};
@@ -340,7 +356,8 @@ std::vector<CornerLimit> FindCornerLimits(CellPatch const &cell, LimitMaskFinder
         if (!mask) {
             return {};
         }
-        int const half = cell.kind == CellKind::Half ? cell.GetHalf() : 0;
+        bool const isHalf = cell.kind == CellKind::Half || cell.kind == CellKind::HalfPolygon;
+        int const half = isHalf ? cell.GetHalf() : 0;
         int const side = patch.sides[std::size_t(findSide(level, vert, 0, half))];
         LimitMask::Tangents const &tangents = mask->sides[std::size_t(side)];
         auto const spread = [&](std::vector<double> const &weights) {

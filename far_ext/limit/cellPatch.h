@@ -4,6 +4,7 @@
 
 #include "limitMask.h"
 
+#include "far_ext/surfaceFaces.h"
 #include "far_ext/vtr/refinementRules.h"
 
 #include <functional>
@@ -20,10 +21,10 @@ inline constexpr int kNumHalfCellCorners = HexIndexing::kNumBoundaryEFaceCorners
 /// Kinds of cells, and of what is shared by those that meet.
 enum class CellKind {
     Whole,       ///< a base face, or the F-face that comes of it step by step
-    HalfPolygon, ///< the same, where the base face is a half face
+    HalfPolygon, ///< the same, where the base face is a half face or half a face
     Half,        ///< half of a hexagon, or a half face, of four corners, that an edge made
     Edge,        ///< an edge that runs along an edge of level 0
-    LongEdge,    ///< the same across a hexagon, or along a half face
+    LongEdge,    ///< the same across a face, or along a half face
     Vertex       ///< a vertex of level 0, or its V-vertex
 };
 
@@ -40,13 +41,13 @@ struct CellPatch {
     LimitPatch patch;
 
     int GetNumCorners() const { return int(locals.size()); }
-    /// For a half cell, which half of a hexagon it is, as in kHexagonHalves.
-    int GetHalf() const { return locals[0] == kHexagonHalves[1][0] ? 1 : 0; }
+    /// For a half cell or a half polygon, which half of a face it is, as in GetPlaceInHalves().
+    int GetHalf() const { return locals[0] == kDiagonalStart ? 0 : 1; }
 };
 
-/// Gathers the cell of a base face, \p level being level 0.
-OPENSUBDIVHEX_API void GatherBaseCell(Level const &level, Far::Index face, Sdc::Options sdcOptions,
-                                      CellPatch &cell);
+/// Gathers the cell of a surface face.
+OPENSUBDIVHEX_API void GatherBaseCell(SurfaceFaces const &faces, Far::Index face,
+                                      Sdc::Options sdcOptions, CellPatch &cell);
 
 /// \brief Makes the cell of a base face that GatherBaseCell() gathers where no feature is near, but for the
 /// sources, which are the numbers of the points themselves.
@@ -58,12 +59,12 @@ OPENSUBDIVHEX_API CellPatch MakePlainBaseCell(std::vector<int> faceSizes,
                                               std::vector<Far::Index> faceVerts, int numInner,
                                               int numPoints, bool hasSignature);
 
-/// \brief Writes what the edges and vertices of a base face are in its own eyes, which all faces that
+/// \brief Writes what the edges and vertices of a surface face are in its own eyes, which all faces that
 /// share one need to number it alike: its *turns*.
 ///
 /// \param turns  by edge, whether it runs against the face, 1 or 0; then by vertex, how many faces of
 ///               its fan lie before the face
-OPENSUBDIVHEX_API void FindBaseCellTurns(Level const &level, Far::Index face, int *turns);
+OPENSUBDIVHEX_API void FindBaseCellTurns(SurfaceFaces const &faces, Far::Index face, int *turns);
 
 /// The edges and then the vertices of a base cell, whose patch's vertices are their sources.
 OPENSUBDIVHEX_API std::vector<CellPatch> GatherBorder(CellPatch const &baseCell, int const *turns,
@@ -81,8 +82,8 @@ struct CellRefinement {
 /// half cells on this side of the edges, which are those behind corner 0 and so on of a whole cell
 /// and behind corner 1 and so on of a half cell and of a half polygon.
 ///
-/// Of an edge it is the long edge from end to end; of a long edge the edge from its start, the long
-/// edge in its middle and the edge from its end; of a vertex it is the V-vertex.
+/// An edge becomes the long edge between its ends; a long edge becomes the edge at its start, the long
+/// edge in its middle and the edge at its end; a vertex becomes the V-vertex.
 OPENSUBDIVHEX_API CellRefinement RefineCell(CellPatch const &cell, Sdc::Options sdcOptions,
                                             HexSchemeOptions const &schemeOptions,
                                             Interpolation interpolation);

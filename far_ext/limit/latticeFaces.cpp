@@ -96,7 +96,7 @@ bool isMirrorSymmetric(LatticePatch const &patch, PatchWeights const &weights) {
     return areEqual(mirrored, weights);
 }
 
-/// Those of the vertex that one, or its mirror image, comes to as the face turns.
+/// Returns the weights of the vertex to which a vertex, or its mirror image, comes as the face turns.
 PatchWeights turn(LatticePatch const &patch, PatchWeights const &weights, bool isMirrored,
                   int turns) {
     PatchWeights result(weights.size());

@@ -43,9 +43,10 @@ public:
         int numOutputs = 0;        ///< of a face: all vertices of its orbits in turn
         /// \brief By face, the vertices.
         ///
-        /// Of the vertices between two faces each face owns half, those that are no mirror images in it; a face without a
-        /// neighbour there owns all.  Slots owned by the neighbouring face hold a duplicate index, the first vertex of the
-        /// last orbit, which lies inside: so each vertex is written once or to equal values.
+        /// Two neighbouring faces own half of the vertices between them each: in each face, those that are no mirror
+        /// images.  A face without a neighbour there owns all.  Slots owned by the neighbouring face hold a duplicate
+        /// index, the first vertex of the last orbit, which lies inside: so each vertex is written once or to equal
+        /// values.
         Buffer<Index> outputs;
         /// The duplicate index in slots that the neighbouring face owns.
         Index GetStandIn(std::size_t face) const {

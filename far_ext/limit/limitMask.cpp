@@ -668,9 +668,9 @@ LimitMask FaceLimitMaskFinder::Find(Index face) const {
         mask.weights.assign(size, 0.0);
         mask.weights[kDiagonalStart] = mask.weights[diagonalEnd] = 0.5;
         for (int half : {0, 1}) {
-            std::vector<int> corners;
-            for (int i = 0; i < GetHalfSize(half, size, diagonalEnd); ++i) {
-                corners.push_back(GetPlaceInHalves(half, i, diagonalEnd));
+            std::vector<int> corners(std::size_t(GetHalfSize(half, size, diagonalEnd)));
+            for (std::size_t i = 0; i < corners.size(); ++i) {
+                corners[i] = GetPlaceInHalves(half, int(i), diagonalEnd);
             }
             addHalfTangents(corners, mask);
         }

@@ -77,7 +77,7 @@ public:
         : _level(level), _sdcOptions(sdcOptions), _schemeOptions(schemeOptions),
           _rules(GetRules(level, schemeOptions, Interpolation::Vertex)) {}
 
-    /// Of a face with an infinitely sharp diagonal the sides are half 0 and half 1; others have
+    /// A face with an infinitely sharp diagonal has two sides, half 0 and half 1; other faces have
     /// one.
     LimitMask Find(Far::Index face) const;
 

@@ -68,7 +68,7 @@ public:
     void Fill(Columns const &columns, LimitStencilPlace<REAL> const *places);
 
 private:
-    // What an index has: its rows in the round that is set, and its column.
+    // The column of an index, and its rows in the round that is set.
     struct Entry {
         unsigned round = 0;
         int column = 0;

@@ -23,7 +23,7 @@ public:
     static constexpr int kMaxSources =
         std::max(LatticePatch::kMaxPlaces, PlainNeighborhoodGatherer::kNumRegular);
 
-    /// Of side 0 of each vertex of the level of \p rows, one of a refiner's \p mesh; all are referred to.
+    /// Prepares side 0 of each vertex of the level of \p rows, a level of \p mesh.  Both are referred to.
     LimitOrigins(MeshLevels const &mesh, LimitRows &rows);
 
     /// \return  as LimitRows; the others may be asked only when it is well

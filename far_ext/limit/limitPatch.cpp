@@ -117,8 +117,8 @@ bool LimitPatchGatherer::comesApart(Index vert) {
     return isApart;
 }
 
-// What tells the vertex of the patch that a corner has: that of the level or, where it comes apart, the fan.
-// When the complete vertices have numbers, others do not come apart, as in plain neighborhoods.
+// Returns the key of a corner's vertex in the patch: the vertex of the level or, where that comes apart, the fan.
+// Once the complete vertices have numbers, others do not come apart, as in plain neighborhoods.
 Index LimitPatchGatherer::findKey(Index corner) {
     Index const vert = _level.faceVerts[corner];
     if (!comesApart(vert)) {
@@ -255,10 +255,12 @@ void LimitPatchGatherer::addFace(Index face, int local, bool isRing, LimitPatch 
     Index const first = _level.faceFirstCorner[face];
     int const size = _level.faceFirstCorner[face + 1] - first;
     float const diagonal = _level.GetDiagonalSharpness(face);
+    int diagonalEnd = _level.GetDiagonalEnd(face);
     if (_level.IsHalfFace(face)) {
         local = 0;
     } else if (Crease::IsSharp(diagonal)) {
-        local = local < kDiagonalEnd ? kDiagonalStart : kDiagonalEnd;
+        local = local < diagonalEnd ? kDiagonalStart : diagonalEnd;
+        diagonalEnd = local == kDiagonalStart ? diagonalEnd : size - diagonalEnd;
     }
     Index const patchFirst = Index(patch.faceVerts.size());
     for (int i = 0; i < size; ++i) {
@@ -278,9 +280,8 @@ void LimitPatchGatherer::addFace(Index face, int local, bool isRing, LimitPatch 
                 _level, patch);
         }
     }
-    if (CrossedFace const *const crossed = _level.FindCrossedFace(face);
-        crossed && Crease::IsSharp(diagonal)) {
-        patch.crossedFaces.push_back({Index(patch.faceSizes.size()), crossed->end});
+    if (Crease::IsSharp(diagonal) && _level.FindCrossedFace(face)) {
+        patch.crossedFaces.push_back({Index(patch.faceSizes.size()), diagonalEnd});
     }
     patch.faceSizes.push_back(size);
     patch.diagonalSharpness.push_back(diagonal);
@@ -665,7 +666,7 @@ struct SparseRow {
         }
     }
 
-    // Of the faces around a vertex of a few faces.
+    // Room for the faces around a vertex of a few faces.
     static constexpr std::size_t kUsualSize = 32;
 
     std::vector<std::pair<Index, double>> entries;

@@ -33,9 +33,9 @@ public:
     /// \return          the vertices that vectors have, ascending
     std::vector<Index> Confine(std::vector<Index> verts, bool isCorner);
 
-    /// Of left vectors: what the vertices after all steps weigh, in terms of those before.
+    /// Turns a left vector by vertices after all steps into one by vertices before them.
     void ApplyLeft(Vector &left);
-    /// Of values before all steps: those after.
+    /// Turns values before all steps into values after them.
     void ApplyRight(Vector &right);
 
 private:

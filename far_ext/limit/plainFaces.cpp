@@ -132,7 +132,7 @@ void PlainFaces::keepSharedTypes(std::vector<Candidates> const &ofRanges) {
     }
 }
 
-// Of its own vertices those of which the face is the first.
+// Lists those of its vertices of which the face is the first.
 void PlainFaces::listOutputs(Index face, std::vector<Index> &outputs) const {
     Level const &level = _mesh.levels[std::size_t(_level)];
     outputs.clear();

@@ -171,7 +171,7 @@ bool PlainNeighborhoodGatherer::addFace(Index face, int local, PlainNeighborhood
         }
         *key++ = char(number);
     }
-    // Of a face's, all faces count as those of the ring.
+    // In the neighborhood of a face, all faces count as faces of the ring.
     addCornerTags(face, local, _neighbors.empty() || _faces.size() <= _neighbors.size(), result);
     return size < kEndOfBytes && result.sources.size() < kEndOfBytes;
 }

@@ -69,7 +69,7 @@ struct RegularFaceMask {
 /// \brief The vertices of a level whose limit follows from faces of that level or of one before, for
 /// all six of a face together.
 ///
-/// Of a regular face these are the F-vertices, so that the level of the face will do, which is
+/// In a regular face these are the F-vertices, so that the level of the face will do, which is
 /// smaller.  Other F-vertices are regular, too: where faces near theirs are no hexagons, or have
 /// irregular vertices.  Their limit follows from the F-face that they are the vertices of, some of
 /// which may be irregular.

@@ -17,7 +17,7 @@ namespace OpenSubdivHex::FarExt::internal {
 /// The weights of a vertex for the point, du and dv.
 using LimitWeights = std::array<double, 3>;
 
-/// Of weights of limits, the largest of which are about 1: smaller differences are rounding.
+/// Smaller differences of limit weights are rounding: the largest weights are about 1.
 constexpr double kWeightTolerance = 1e-9;
 
 /// A LimitRow by vertex, in which a vertex comes once.

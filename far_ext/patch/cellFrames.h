@@ -45,7 +45,7 @@ public:
     double GetLargestDoubt() const { return _largestDoubt; }
 
 private:
-    // Of a corner at a vertex whose sides have a beginning.
+    // A corner at a vertex whose sides have a beginning.
     struct SharpCorner {
         Index corner;
         int half; // -1: both

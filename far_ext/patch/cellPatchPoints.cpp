@@ -26,7 +26,7 @@ std::vector<CornerWeights> findPatchCorners(CellPatch const &cell) {
             corners.back()[std::size_t(corner)] += 1 / double(ofCell.size());
         }
     };
-    FaceCells const cells = FindCellsOfCell(cell);
+    FaceCells const cells = MakeFaceCells({numCorners, cell.kind != CellKind::Whole});
     for (int half = 0; half < (cells.IsCut() ? 2 : 1); ++half) {
         int const size = cells.GetNumCorners(half);
         std::vector<int> ofCell;
@@ -42,7 +42,7 @@ std::vector<CornerWeights> findPatchCorners(CellPatch const &cell) {
         }
         // As VaryingPoints has it.
         std::vector<int> const center =
-            cells.IsCut()
+            cells.AreHalves()
                 ? std::vector<int>{at(0), at(0), at(1), at(1), at((size + 1) / 2), at(size / 2 + 1)}
                 : ofCell;
         for (int i = 0; i < size; ++i) {
@@ -83,17 +83,6 @@ void findBilinearPoints(CellPatch const &cell, std::vector<double> &rows) {
 
 } // namespace
 
-FaceCells FindCellsOfCell(CellPatch const &cell) {
-    LimitPatch const &patch = cell.patch;
-    int const size = cell.GetNumCorners();
-    if (cell.kind != CellKind::Whole) {
-        return {size, 0, true};
-    }
-    bool const isCrossed = !patch.crossedFaces.empty() && patch.crossedFaces.front().face == 0 &&
-                           Sdc::Crease::IsInfinite(patch.diagonalSharpness.front());
-    return isCrossed ? FaceCells{size, patch.crossedFaces.front().end, false} : MakeFaceCells(size);
-}
-
 CallStatus FindCellPatchPoints(CellPatch const &cell, Sdc::Options sdcOptions,
                                HexSchemeOptions const &schemeOptions, Interpolation interpolation,
                                PatchAges const &ages, std::vector<double> &rows) {
@@ -109,11 +98,12 @@ CallStatus FindCellPatchPoints(CellPatch const &cell, Sdc::Options sdcOptions,
     BuildPatchLevel(cell.patch, mesh.levels[0]);
     RefineHexagonally(mesh.levels[0], {sdcOptions, schemeOptions.faceMask}, true,
                       mesh.refinements[0], mesh.levels[1]);
-    bool const isHalf = cell.kind == CellKind::Half;
-    assert(isHalf || cell.locals[0] == 0);
-    int const half = isHalf && HasHalves(mesh.levels[0].GetFaceSize(0)) ? cell.GetHalf() : 0;
-    PatchCells const cells = isHalf ? PatchCells(mesh, 0, PatchCell{0, half})
-                                    : PatchCells(mesh, 0, std::vector<Index>{0});
+    bool const isWhole = cell.kind == CellKind::Whole;
+    assert(!isWhole || cell.locals[0] == 0);
+    bool const isCut = FindFaceCells(mesh.levels[0], 0).IsCut();
+    PatchCells const cells = isWhole
+                                 ? PatchCells(mesh, 0, std::vector<Index>{0})
+                                 : PatchCells(mesh, 0, PatchCell{0, isCut ? cell.GetHalf() : 0});
     PatchBuilder builder(hierarchy, -1, sdcOptions, schemeOptions, cells);
     PatchAges ofVertices = {ages.steps,
                             std::vector<int>(std::size_t(mesh.levels[0].numVertices), 0)};

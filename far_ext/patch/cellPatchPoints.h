@@ -10,9 +10,6 @@
 
 namespace OpenSubdivHex::FarExt::internal {
 
-/// The cells that a whole cell, a half polygon or a half cell is for its patches.
-OPENSUBDIVHEX_API FaceCells FindCellsOfCell(CellPatch const &cell);
-
 /// \brief Finds the points of the patches of a whole or half cell as sums of the vertices of its patch.
 ///
 /// Varying data, which have kinks along edges of all levels, are bilinear between the corners of a patch.

@@ -95,7 +95,7 @@ public:
         this->_weights = std::move(weights);
     }
     void MoveTo(StencilTableReal<REAL> &table) {
-        // What is protected in the base of another object can be reached through what is public.
+        // Protected members of another object are out of reach; its public accessors lead to them.
         const_cast<std::vector<int> &>(table.GetSizes()).clear();
         table = FilledTable(this->_numControlVertices);
         const_cast<std::vector<int> &>(table.GetSizes()).swap(this->_sizes);
@@ -130,7 +130,7 @@ std::unique_ptr<PatchTable> makeTable(PatchTableContent const &content) {
     return std::unique_ptr<PatchTable>(Factory::Create(*refiner, options));
 }
 
-// What Far's accessors give of a table that is not constant.
+// Replaces elements of a table that Far's accessors return as constant, although the table is not.
 template <typename ELEMENT, typename ARRAY>
 void replace(ARRAY const &array, std::vector<ELEMENT> const &elements) {
     std::copy(elements.begin(), elements.end(), const_cast<ELEMENT *>(array.begin()));

@@ -339,7 +339,7 @@ void AddKitePoints(CurveShape const &shape, CurveNeighbor const neighbors[2],
     CurveNeighbor const lineBehind = {side.angles[1], spoke.lengths[1] * side.besides[1]};
     CurveNeighbor const ofLine[2] = {{kPi - angle, half}, lineBefore};
     addInnerPoints(line, makeInward(ofLine, lengths), mask);
-    // Of the kite on the other side the line leads from the centre to the middle.
+    // Seen from the kite on the other side, the line leads from the centre to the middle.
     CurveNeighbor const fromCenter[2] = {lineBehind, {angle, half}};
     double const reversed[2] = {lengths[1], lengths[0]};
     auto const points = makeInnerPoints(reverse(line), makeInward(fromCenter, reversed));

@@ -47,7 +47,7 @@ struct CurveShape {
     double unit = 1; ///< of the derivative across in the middle, in terms of M
 };
 
-/// \brief What the other side of a patch is like that meets a curve at one of its ends.
+/// \brief The other side of a patch, which meets a curve at one of the curve's ends.
 struct CurveNeighbor {
     double angle;  ///< of the corner, between both
     double length; ///< as of a CurveEnd

@@ -107,7 +107,7 @@ private:
         Index points[2] = {Far::INDEX_INVALID, Far::INDEX_INVALID}; // beside its two vertices
         // Points of the patch on each side, in the order of the side.
         Index inner[2] = {Far::INDEX_INVALID, Far::INDEX_INVALID};
-        // Of the sides of faces with kites: the five points of the halves, and whose order they have.
+        // For sides of faces with kites: the five points of the halves, and the side in whose order they are.
         Index halves = Far::INDEX_INVALID;
         int sideOfHalves = 0;
         Index rowOfM = Far::INDEX_INVALID; // of side 0, or of both if it is not sharp
@@ -311,11 +311,11 @@ CallStatus PatchBuilder::LevelBuilder::FindLimits() {
     });
     _surfaceFaces.assign(2 * std::size_t(_level.numFaces), 0);
     if (_depth > _surfaceDepth) {
+        SurfaceFaces const faces(_mesh.levels[std::size_t(_surfaceDepth)]);
         ParallelFor(2 * _level.numFaces, [&](Index i) {
             Index const face = FindBaseFace(_mesh, _surfaceDepth, _depth, {i / 2, i % 2});
             _surfaceFaces[std::size_t(i)] =
-                std::uint8_t(std::min(_mesh.levels[std::size_t(_surfaceDepth)].GetFaceSize(face),
-                                      PatchSite::kMaxSurfaceFaceSize));
+                std::uint8_t(std::min(faces.GetShape(face).size, PatchSite::kMaxSurfaceFaceSize));
         });
     }
     _frames.emplace(_level, _rows, _verts);
@@ -540,7 +540,7 @@ auto PatchBuilder::LevelBuilder::getCellCurve(PatchCell cell, int side) const ->
         result.rows[end] = FindRow(frame.vert, frame.side);
         result.shape.ends[end] = {end == 0 ? frame.begin : frame.end,
                                   getLength(cell.face, cell.half, side, end)};
-        // Of the side before its end, of that behind its start.
+        // The side before its end, and the side behind its start.
         result.neighbors[end] = {
             frame.end - frame.begin,
             getLength(cell.face, cell.half, side + (end == 0 ? -1 : 1), 1 - end)};
@@ -554,7 +554,7 @@ auto PatchBuilder::LevelBuilder::getCellCurve(PatchCell cell, int side) const ->
         result.shape.unit = border->shape.unit;
         return result;
     }
-    // The same for both sides: of vertices the older one comes first.
+    // Equal for both sides: the older vertex comes first.
     result.shape.blend = _builder._constants.Get(
         getSite(PatchQuantity::Blend, getCellSide(cell.face, cell.half, side),
                 std::min(verts[0], verts[1]), std::max(verts[0], verts[1])));

@@ -48,13 +48,10 @@ std::vector<unsigned char> makeChildren(Refinement const &refinement,
 
 FaceCells FindFaceCells(Level const &level, Index face) {
     int const size = level.GetFaceSize(face);
-    if (level.IsHalfFace(face)) {
-        return {size, 0, true};
-    }
     CrossedFace const *const crossed = level.FindCrossedFace(face);
     return crossed && Sdc::Crease::IsInfinite(level.GetDiagonalSharpness(face))
                ? FaceCells{size, crossed->end, false}
-               : MakeFaceCells(size);
+               : MakeFaceCells({size, level.IsHalfFace(face)});
 }
 
 PatchCells::PatchCells(MeshLevels const &mesh, int level) : _firstLevel(level) {
@@ -151,11 +148,9 @@ PatchCells::PatchCells(FVarChannel const &channel, MeshLevels const &mesh, Patch
     : _firstLevel(ofMesh._firstLevel) {
     for (int depth = _firstLevel; depth <= ofMesh.GetLastLevel(); ++depth) {
         FVarLevel const &level = channel.levels[std::size_t(depth)];
-        // Hexagons on both sides of a seam are two faces there.
         auto const getCell = [&](PatchCell const &cell) {
-            FVarLevel::SplitFace const *const split = level.FindSplitFace(cell.face);
-            return split ? PatchCell{split->valueFaces[cell.half], 0}
-                         : PatchCell{level.valueFaces[cell.face], cell.half};
+            auto const [face, half] = level.GetValueCell({cell.face, cell.half});
+            return PatchCell{face, half};
         };
         Marks marks(std::size_t(level.values->numFaces), 0);
         for (PatchCell const &cell : ofMesh.GetCells(depth)) {

@@ -2,6 +2,7 @@
 #ifndef OPENSUBDIVHEX_FAR_EXT_PATCH_PATCH_CELLS_H
 #define OPENSUBDIVHEX_FAR_EXT_PATCH_PATCH_CELLS_H
 
+#include "far_ext/faceShape.h"
 #include "far_ext/vtr/hierarchy.h"
 
 #include <functional>
@@ -16,9 +17,7 @@ struct PatchCell {
     int half; ///< of a face that is cut, as in GetPlaceInHalves(); else 0
 };
 
-/// \brief The cells of a face: its two halves if it is a hexagon, or has an infinitely sharp diagonal; else itself.
-///
-/// In the plane of a face a diagonal runs through its centre.
+/// The cells of a face: its two halves if it is a hexagon, or has an infinitely sharp diagonal; else itself.
 struct FaceCells {
     bool IsCut() const { return diagonalEnd > 0; }
     /// Whether cells are halves of regular polygons with the first side across.
@@ -28,10 +27,7 @@ struct FaceCells {
         return IsCut() ? GetHalfSize(half, faceSize, diagonalEnd) : faceSize;
     }
     /// Whether a cell is made of kites.
-    bool HasKites(int half) const {
-        bool const isStraight = !IsCut() || 2 * diagonalEnd == faceSize;
-        return GetNumCorners(half) != 4 || !isStraight;
-    }
+    bool HasKites(int half) const { return GetNumCorners(half) != 4; }
     /// The patches of a cell.
     int GetNumPatches(int half) const { return HasKites(half) ? GetNumCorners(half) : 1; }
     /// Those of the face.
@@ -54,9 +50,9 @@ struct FaceCells {
     bool isHalf;     ///< a half face
 };
 
-/// Those of a face without a sharp diagonal.
-constexpr FaceCells MakeFaceCells(int faceSize) {
-    return {faceSize, HasHalves(faceSize) ? kDiagonalEnd : 0, false};
+/// Those of a face without a sharp diagonal, or of half a face.
+constexpr FaceCells MakeFaceCells(FaceShape shape) {
+    return {shape.size, HasHalves(shape.size) && !shape.isHalf ? kDiagonalEnd : 0, shape.isHalf};
 }
 /// Those of a face.
 FaceCells FindFaceCells(Level const &level, Far::Index face);

@@ -272,8 +272,8 @@ constexpr FirstLevels kFirstLevels[] = {
       {{98, 66, 13, 0, 13, 66}, {121, 68, 0, 0, 27, 40}}}},
 };
 
-// The same in quads and beside them, as in QuadMask; ./dev masks finds these and
-// those above.  After the first step all corners beside a neighbor of a vertex among quads are at a quad,
+// The masks in quads and beside them, as in QuadMask.  ./dev masks finds these tables and
+// the tables above.  After the first step all corners beside a neighbor of a vertex among quads are at a quad,
 // and nothing else is.
 struct FirstOfQuads {
     int inQuad[4];

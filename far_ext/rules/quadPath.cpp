@@ -16,7 +16,7 @@ namespace {
 constexpr int kHexagon = 6;
 constexpr int kDigit = 4; // digits
 constexpr int kNumPaths = kDigit * kDigit * kDigit;
-// Of vertices, by number of faces.
+// Kinds of vertices, by number of faces.
 constexpr int kFourFaces = 0;
 constexpr int kOtherFaces = 4;
 constexpr int kNumVertices = kOtherFaces + 1;

@@ -52,9 +52,9 @@ struct QuadFlags {
 /// Makes the flags that a step appends these digits to; \p numSteps hexagonal steps made the level that has \p flags.
 QuadFlags AppendToQuadFlags(QuadFlags flags, int numSteps, int outDigit, int inDigit);
 
-/// \brief What the paths of its flags tell of a corner's F-vertex.
+/// \brief The weights of a corner's F-vertex, found by the paths of the corner's flags.
 struct QuadRow {
-    /// In a hexagon, from the corner on forward around the face, or backward; null where they tell none.
+    /// In a hexagon, from the corner on forward around the face, or backward; null where no table has the paths.
     double const (*mask)[6];
     bool isBackwards;
     /// The weight of the F-vertex in V' of the corner's vertex; negative where they tell none.

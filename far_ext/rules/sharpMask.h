@@ -63,7 +63,7 @@ inline constexpr OneFaceMask kOneFaceMask = {
 inline constexpr double kTruncateAlongEdge = 1.0 / 3;
 /// Weight of each neighbor in V' = (7 V + V_l + V_r)/9.
 inline constexpr double kTruncateAlongCrease = 1.0 / 9;
-/// Of each neighbor along the line, for what the mean of the centroids around V would bring on both sides of it:
+/// Weight of each neighbor along the line: in the place of the mean of the centroids around V stands
 /// (V_l + V_r - 2 V)/6.
 inline constexpr double kTruncateAround = 1.0 / 6;
 /// The most faces on a side of a line where it passes through the polygon of a vertex, whose masks have as many rows.

@@ -59,8 +59,8 @@ public:
     void Fill(Index numSources) const;
 
 private:
-    // What one thread works on.  What it writes most is in buffers, which share no cache lines with
-    // those of another: benchmark table/hexagon/small/warm with 2 threads is 1.1 times as fast.
+    // The data of one thread.  The arrays written most are buffers, which share no cache lines with
+    // those of another thread: benchmark table/hexagon/small/warm with 2 threads is 1.1 times as fast.
     struct Scratch {
         explicit Scratch(Index numSources) : position(numSources), sumOfSource(numSources) {}
 

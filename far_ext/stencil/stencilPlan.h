@@ -24,7 +24,7 @@ struct StencilPlan {
     Index GetNumVertices(int level) const {
         return level == 0 ? hierarchy.GetNumControlPoints(channel) : GetLevel(level).numVertices;
     }
-    /// What vertices of a level stand for as sources; of values, those that the user has.
+    /// Returns the sources that vertices of a level stand for; in a value mesh, the user's values.
     std::vector<Index> GetSources(int level, std::vector<Index> verts) const;
     /// Overload for all vertices.
     std::vector<Index> GetSources(int level) const;

@@ -27,7 +27,7 @@ FindFacesOfBaseFaces(MeshLevels const &mesh, Far::ConstIndexArray baseFaces, int
 std::vector<Far::Index> FindVerticesOfFaces(Hierarchy const &hierarchy, int level, int channel,
                                             std::vector<FacePart> const &parts);
 
-/// The same of all levels of a plan, in the faces that lie in base faces; none of levels that the table does not
+/// Overload for all levels of a plan, and their faces in base faces; empty for levels that the table does not
 /// have.
 std::vector<std::vector<Far::Index>> FindVerticesOfBaseFaces(StencilPlan const &plan,
                                                              Far::ConstIndexArray baseFaces);

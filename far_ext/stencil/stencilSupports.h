@@ -85,8 +85,8 @@ private:
     SupportArena::Writer _writer;
 };
 
-/// \brief What the stencils of a refinement's rows depend on: those of the F-vertices of a face share a support,
-/// and a V-vertex mostly shares that of one of the faces around it.
+/// \brief The supports of a refinement's rows: the F-vertices of a face share a support, and a V-vertex mostly
+/// shares the support of one of the faces around it.
 class RowSupports {
 public:
     using Index = Far::Index;

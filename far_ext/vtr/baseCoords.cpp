@@ -35,15 +35,16 @@ Quad makeQuad(SectorPoint start, SectorPoint end, SectorPoint center, bool isHal
 
 // A cell in its base face: the F-face of that, or a quad in the sector of one of its edges.
 struct PlacedCell {
-    Index baseFace;
+    Index baseFace;  // a surface face
     int sector = -1; // negative for the F-face
     double scale = 1;
     Quad quad{};
 };
 
 PlacedCell place(MeshLevels const &mesh, int baseDepth, int depth, Cell cell) {
+    SurfaceFaces const faces(mesh.levels[std::size_t(baseDepth)]);
     if (depth == baseDepth) {
-        return {cell.face};
+        return {faces.GetFace({cell.face, cell.half})};
     }
     Refinement const &refinement = mesh.refinements[std::size_t(depth) - 1];
     Level const &parent = *refinement.parent;
@@ -63,7 +64,8 @@ PlacedCell place(MeshLevels const &mesh, int baseDepth, int depth, Cell cell) {
     int const local = parent.edgeFaceLocals[edge][side];
     bool const isHalf = parent.edgeFaces[edge][1] != kFreeBoundary;
     if (isWhole) {
-        placed.sector = local;
+        // An F-face has the number of its base face, and the places of edges there.
+        placed.sector = faces.GetSideOfPlace(pCell.face, local).local;
         placed.quad = makeQuad({placed.scale, 0}, {0, placed.scale}, center, isHalf);
     } else {
         auto const &corners = placed.quad.corners;
@@ -94,7 +96,7 @@ Index FindBaseFace(MeshLevels const &mesh, int baseDepth, int depth, Cell cell) 
     for (; depth > baseDepth; --depth) {
         cell = mesh.refinements[std::size_t(depth) - 1].GetParentCell(cell);
     }
-    return cell.face;
+    return SurfaceFaces(mesh.levels[std::size_t(baseDepth)]).GetFace({cell.face, cell.half});
 }
 
 template <typename REAL>
@@ -104,7 +106,8 @@ bool FindBaseCoords(MeshLevels const &mesh, int baseDepth, int depth, Cell cell,
         return false;
     }
     PlacedCell const placed = place(mesh, baseDepth, depth, cell);
-    FaceShape const shape = GetFaceShape(mesh.levels[std::size_t(baseDepth)], placed.baseFace);
+    FaceShape const shape =
+        SurfaceFaces(mesh.levels[std::size_t(baseDepth)]).GetShape(placed.baseFace);
     int const size = shape.size;
     BasePolygon const polygon(shape);
     auto const parameterization = MakeFaceParameterization(size);

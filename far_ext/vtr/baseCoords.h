@@ -4,14 +4,9 @@
 
 #include "hierarchy.h"
 
-#include "far_ext/faceShape.h"
+#include "far_ext/surfaceFaces.h"
 
 namespace OpenSubdivHex::FarExt::internal {
-
-/// The shape of a face that has a surface, of a level with full topology.
-inline FaceShape GetFaceShape(Level const &level, Far::Index face) {
-    return {level.GetFaceSize(face), level.IsHalfFace(face)};
-}
 
 /// Kinds of coordinates in a face.
 enum class CoordsOf {
@@ -19,7 +14,7 @@ enum class CoordsOf {
     Parameterization ///< that of MakeFaceParameterization()
 };
 
-/// \brief The places of the vertices of a cell of level \p depth in its face of level \p baseDepth: see
+/// \brief The places of the vertices of a cell of level \p depth in its surface face of level \p baseDepth: see
 /// TopologyLevel::GetFaceBaseCoords.
 ///
 /// \param cell  of a face that lies in one such face all of that is meant
@@ -28,7 +23,7 @@ enum class CoordsOf {
 template <typename REAL>
 bool FindBaseCoords(MeshLevels const &mesh, int baseDepth, int depth, Cell cell, CoordsOf coordsOf,
                     REAL *uv);
-/// The face; INDEX_INVALID where FindBaseCoords() is false.
+/// The surface face; INDEX_INVALID where FindBaseCoords() is false.
 Far::Index FindBaseFace(MeshLevels const &mesh, int baseDepth, int depth, Cell cell);
 
 } // namespace OpenSubdivHex::FarExt::internal

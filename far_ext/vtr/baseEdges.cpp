@@ -210,7 +210,7 @@ inline bool MateFinder<PLACES>::findMatesOfFew(Index first, NUM_FACES numFaces) 
     return met == all && numFaces > 1; // one face alone has come back to itself
 }
 
-// The same where a fan begins with a face of the vertex: from this on, counter-clockwise.
+// Finds the mates in an open fan that begins with a face of the vertex: from this face on, counter-clockwise.
 template <typename PLACES>
 template <int SIZE>
 bool MateFinder<PLACES>::findMatesOfOpen(Index first, int numFaces, int start) const {

@@ -26,11 +26,11 @@ std::vector<Far::Index> BuildBaseLevel(OpenSubdiv::Vtr::ConstArray<EdgeSides> ed
 /// with boundaryEdges, and from \p corners.
 std::vector<Far::Index> FinishBaseLevel(Corners const &corners, Level &level);
 
-/// The same where vertFaces has the corners of the faces, in order but at corners.oddVerts, and the first
-/// side of each edge is at the lower corner.
+/// Variant for vertFaces with the corners of the faces, in order but at corners.oddVerts, and with the first
+/// side of each edge at the lower corner.
 std::vector<Far::Index> FinishOrderedLevel(Corners const &corners, Level &level);
 
-/// \brief What comes before it: finds vertFirstEdge, where the relations of faces and edges, with
+/// \brief Begins the relations of vertices: finds vertFirstEdge, where the relations of faces and edges, with
 /// boundaryEdges, and vertFirstFace are there, and room for those of vertices.
 void BeginVertices(Level &level);
 

@@ -102,7 +102,7 @@ unsigned findRepeated(Index const *verts) {
     return result;
 }
 
-// The same for quads that follow one another: compilers look at the corners of one at a time.
+// Variant for consecutive quads: compilers look at the corners of one at a time.
 unsigned findRepeatedInQuads(Index const *verts, Index numFaces) {
     constexpr int kSize = 4;
     unsigned results[kSize] = {};
@@ -115,7 +115,7 @@ unsigned findRepeatedInQuads(Index const *verts, Index numFaces) {
     return results[0] | results[1] | results[2] | results[3];
 }
 
-// The same for any faces that follow one another; not 0 for a face of many vertices, too.
+// Variant for any consecutive faces; not 0 for a face of many vertices, too.
 unsigned findRepeated(Level const &level, Index begin, Index end) {
     Index const *verts = level.faceVerts.data() + level.faceFirstCorner[begin];
     unsigned result = 0;
@@ -408,7 +408,7 @@ bool BaseMesh::isPinned(Index vert) const {
            std::binary_search(_repeatedVerts.begin(), _repeatedVerts.end(), vert);
 }
 
-// What a value without seams at a non-manifold vertex needs to move as the vertex does: each fan of
+// Makes a value without seams at a non-manifold vertex move as the vertex does: each fan of
 // faces has a value of its own, which sees the sharp edges of its fan alone.
 CallStatus BaseMesh::followVertex(Index vert, int channel, Index const *faceValues,
                                   std::vector<float> &sharpness) const {

@@ -16,7 +16,7 @@ namespace OpenSubdivHex::FarExt::internal {
 /// \brief Level 0 in the making, whatever mesh it comes from: counts, faces, edges, tags and channels,
 /// in this order.
 ///
-/// What is wrong is found when a step is completed.  Each of the functions that return a CallStatus gives
+/// Errors are found when a step is completed.  Each function that returns a CallStatus gives
 /// the first cause for a refusal, after which nothing else is called.
 class BaseMesh {
 public:

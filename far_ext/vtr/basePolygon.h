@@ -119,12 +119,12 @@ private:
     Pair const _center;
 };
 
-/// What a BasePolygon of a common size says, found once: places are found in it by the million.
+/// A BasePolygon of a common size, prepared once: places are found in it by the million.
 class KnownPolygon {
 public:
     using Pair = BasePolygon::Pair;
 
-    /// That of a shape; null where this is not common.
+    /// Returns the polygon of a shape; null where it is not common.
     static KnownPolygon const *Find(FaceShape shape) {
         int const size = shape.size;
         static KnownPolygon const kAll[] = {KnownPolygon(kMinSize), KnownPolygon(4),

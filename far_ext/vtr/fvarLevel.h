@@ -42,6 +42,13 @@ struct FVarLevel {
         return found != splitFaces.end() && found->face == face ? &*found : nullptr;
     }
 
+    /// The cell of the value mesh that a cell of the mesh is; of a face that is split, each half is a face there.
+    Cell GetValueCell(Cell cell) const {
+        SplitFace const *const split = FindSplitFace(cell.face);
+        return split ? Cell{split->valueFaces[cell.half], 0}
+                     : Cell{valueFaces[cell.face], cell.half};
+    }
+
     Level const *values = nullptr;     ///< the value mesh at this level
     Buffer<Index> valueFaces;          ///< its face, or first half, of each face of the mesh
     std::vector<SplitFace> splitFaces; ///< ascending

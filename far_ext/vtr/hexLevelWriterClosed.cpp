@@ -341,9 +341,9 @@ void HexLevelWriter::fillFacesOfAnySize(Index begin, Index end, SIDES sides) {
     fillClosedCorners(begin, end, write, write);
 }
 
-// What the corners of a run of faces without boundary edges make: an edge of the F-face, a spoke,
-// and the relations of an F-vertex.  One array after the other: so each is written from front to
-// back, by a loop that compilers make vectors of.
+// Writes the components that corners of a run of faces without boundary edges make: an edge of the F-face, a
+// spoke, and the relations of an F-vertex.  One array after the other: so each is written from front to
+// back, by a loop that compilers vectorize.
 //
 // write(kEntries, array, fill) calls fill(entries, corner) for all corners, with their kEntries
 // entries of an array; so does writeClosedForm, for entries that are corners but for a constant.

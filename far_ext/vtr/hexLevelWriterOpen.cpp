@@ -70,7 +70,7 @@ void HexLevelWriter::fillBoundaryEFace(Index pEdge, Index numBoundaryBefore) {
 template void HexLevelWriter::fillBoundaryEFace<false>(Index pEdge, Index numBoundaryBefore);
 template void HexLevelWriter::fillBoundaryEFace<true>(Index pEdge, Index numBoundaryBefore);
 
-// What the corners of a face with boundary edges make, as in fillClosedCorners.
+// Writes the components that corners of a face with boundary edges make, as fillClosedCorners does.
 //
 // An edge whose E-face is missing is a boundary: the edge of the F-face is a B edge then, and the
 // spokes at its ends are A edges, each directed as its one face runs; the F-vertices at its ends

@@ -26,7 +26,7 @@ bool isWholeEFace(Level const &level, Index face) {
            level.GetFaceSize(face) == kHexagon;
 }
 
-// What an E-face has of its own, as bits: an irregular vertex where a side of its edge starts, or a quad
+// Features of an E-face, as bits: an irregular vertex where a side of its edge starts, or a quad
 // across the edge that such a side shares with its F-face.
 using Mark = unsigned char;
 constexpr Mark kVertexA = 1;

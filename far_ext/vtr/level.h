@@ -4,11 +4,11 @@
 
 #include "buffer.h"
 #include "kept.h"
+#include "quadCorners.h"
 
 #include "far_ext/indexing.h"
 #include "far_ext/rules/lineRow.h"
 #include "far_ext/rules/mask.h"
-#include "far_ext/rules/quadPath.h"
 
 #include <opensubdiv/sdc/crease.h>
 #include <opensubdiv/vtr/types.h>
@@ -105,12 +105,6 @@ struct IrregularCorner {
     FacesAround facesAround; ///< of the irregular vertex; Others beside a quad
 };
 
-/// \brief A corner one of whose flags came from a quad, by a path that matters for masks.
-struct QuadCorner {
-    Far::Index corner;
-    QuadFlags flags;
-};
-
 /// \brief A corner of a face beside a line that is regular there, behind a truncation.
 struct LineRowCorner {
     Far::Index corner;
@@ -130,8 +124,8 @@ struct CornerTags {
     std::vector<SectorCorner> sectorCorners; ///< of a corner by kind
     // Those with FaceMask::Smooth; empty with other masks.
     std::vector<IrregularCorner> irregularCorners; ///< one for a corner at most
-    std::vector<QuadCorner> quadCorners;           ///< one for a corner at most
     std::vector<LineRowCorner> lineRowCorners;     ///< more than one between lines
+    QuadCorners quadCorners;                       ///< one for a corner at most
 
     bool HasCornerTags() const {
         return !sectorCorners.empty() || !irregularCorners.empty() || !quadCorners.empty() ||
@@ -140,9 +134,14 @@ struct CornerTags {
     /// Calls function(tags of the kind ...) for each kind, of one thing or of several that have members of these names.
     template <typename FUNCTION, typename... THINGS>
     static void ForEachKind(FUNCTION const &function, THINGS &...things) {
+        ForEachListedKind(function, things...);
+        function(things.quadCorners...);
+    }
+    /// Only for those that are listed, as vectors.
+    template <typename FUNCTION, typename... THINGS>
+    static void ForEachListedKind(FUNCTION const &function, THINGS &...things) {
         function(things.sectorCorners...);
         function(things.irregularCorners...);
-        function(things.quadCorners...);
         function(things.lineRowCorners...);
     }
 };
@@ -161,6 +160,20 @@ OpenSubdiv::Vtr::ConstArray<TAG> FindCornerTags(std::vector<TAG> const &tags, Fa
     return {tags.data() + (first - tags.begin()), int(last - first)};
 }
 
+/// \brief Those of a QuadCorners.
+struct QuadCornerRange {
+    QuadCorners::Iterator first;
+    QuadCorners::Iterator behind;
+
+    QuadCorners::Iterator begin() const { return first; }
+    QuadCorners::Iterator end() const { return behind; }
+    bool empty() const { return first == behind; }
+    QuadCorner const &front() const { return *first; }
+};
+inline QuadCornerRange FindCornerTags(QuadCorners const &tags, Far::Index begin, Far::Index end) {
+    return {{tags, begin, end}, {tags, end, end}};
+}
+
 /// \brief A boundary edge where an edge of level 0 came apart into one for each of its faces.  Edges
 /// of one line run along one curve.
 struct LineEdge {
@@ -174,6 +187,18 @@ struct CrossedFace {
     Far::Index face;
     int end; ///< the vertex where the diagonal ends
 };
+
+/// The entry of a face among some that ascend; null where there is none.
+inline CrossedFace const *FindCrossedFaceIn(std::vector<CrossedFace> const &faces,
+                                            Far::Index face) {
+    if (faces.empty()) {
+        return nullptr;
+    }
+    auto const found = std::lower_bound(
+        faces.begin(), faces.end(), face,
+        [](CrossedFace const &crossed, Far::Index other) { return crossed.face < other; });
+    return found != faces.end() && found->face == face ? &*found : nullptr;
+}
 
 /// @name The places of vertices in their edges, where a hexagonal step made both without boundaries
 /// @{
@@ -293,15 +318,7 @@ struct Level : CornerTags {
     float GetEdgeSharpness(Index e) const { return edgeSharpness.empty() ? 0 : edgeSharpness[e]; }
     /// @name Faces in two halves
     /// @{
-    CrossedFace const *FindCrossedFace(Index f) const {
-        if (crossedFaces.empty()) {
-            return nullptr;
-        }
-        auto const found = std::lower_bound(
-            crossedFaces.begin(), crossedFaces.end(), f,
-            [](CrossedFace const &crossed, Index face) { return crossed.face < face; });
-        return found != crossedFaces.end() && found->face == f ? &*found : nullptr;
-    }
+    CrossedFace const *FindCrossedFace(Index f) const { return FindCrossedFaceIn(crossedFaces, f); }
     /// The vertex where the diagonal of a face ends, if it has one.
     int GetDiagonalEnd(Index f) const {
         CrossedFace const *const crossed = FindCrossedFace(f);
@@ -386,6 +403,7 @@ struct Level : CornerTags {
         function(level.edgeSharpness);
         function(level.diagonalSharpness);
         function(level.crossedFaces);
+        function(level.cutFaces);
         function(level.vertSharpness);
         function(level.faceHoles);
         function(level.nonManifoldVerts);
@@ -394,7 +412,8 @@ struct Level : CornerTags {
         function(level.lineEdges);
         function(level.sharpVerts);
         function(level.irregularVerts);
-        CornerTags::ForEachKind(function, level);
+        CornerTags::ForEachListedKind(function, level);
+        QuadCorners::ForEachArray(level.quadCorners, function);
     }
 
     int depth = 0;
@@ -449,7 +468,9 @@ struct Level : CornerTags {
     Buffer<float> edgeSharpness;     ///< by edge, of interior ones
     Buffer<float> diagonalSharpness; ///< by face
     std::vector<CrossedFace>
-        crossedFaces;                ///< ascending; the same at all levels behind a truncation
+        crossedFaces; ///< ascending; the same at all levels behind a truncation
+    /// Those of them whose diagonals are infinitely sharp, of the level that a truncation makes.
+    std::vector<CrossedFace> cutFaces;
     Buffer<float> vertSharpness;     ///< of the vertices of level 0, the only ones that have any
     Buffer<unsigned char> faceHoles; ///< by face: bit h is set when half h lies in holes
     std::vector<Index> nonManifoldVerts; ///< ascending

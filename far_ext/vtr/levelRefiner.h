@@ -20,7 +20,7 @@ public:
     /// borders, truncations that cut polygons, and what follows them.
     CallStatus CheckSizes(HexSchemeOptions schemeOptions, Far::ConstIndexArray faceLabels,
                           int refinementLevel) const;
-    /// The same for refinement by coplanar faces, as far as sizes are too large whichever edges are
+    /// CheckSizes() for refinement by coplanar faces: finds sizes that are too large whichever edges are
     /// flat.
     CallStatus CheckLeastSizes(bool closeGaps, int refinementLevel) const;
 

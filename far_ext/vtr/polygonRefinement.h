@@ -12,7 +12,7 @@ namespace OpenSubdivHex::FarExt::internal {
 /// \brief Which polygons a refinement makes, beside the F-face of every face.
 struct PolygonRules {
     StepType step = StepType::Hexagonal;
-    /// Of Truncate, by face of level 0: faces with other labels are kept apart.  Empty when all have
+    /// For Truncate, by face of level 0: faces with other labels are kept apart.  Empty when all have
     /// the same.
     Far::ConstIndexArray faceLabels;
     /// For Hexagonal, by edge: whether an interior edge makes a quad of its F-vertices.
@@ -43,7 +43,7 @@ PolygonRules GetRulesOfChannel(Level const &mesh, PolygonRules const &rules,
 /// The last vertex of a V-face is the F-vertex of a corner at its vertex.  INDEXING.md has the
 /// numbering.
 ///
-/// What a component makes is counted first and then written to places that follow from the counts,
+/// The children of each component are counted first.  Then they are written to places that follow from the counts,
 /// so that components can be taken in parallel.
 class PolygonRefiner {
 public:

@@ -42,49 +42,42 @@ QuadFlags makeBaseFlags(Level const &level, Index vert) {
 class QuadFinder {
 public:
     QuadFinder(Refinement const &refinement, Level &level)
-        : _refinement(refinement), _parent(*refinement.parent), _level(level),
-          _isSparse(_parent.numHexagonalSteps + 1 >= kNumStepsToConstantMasks) {}
+        : _refinement(refinement), _parent(*refinement.parent), _level(level) {}
 
     void Find() {
-        if (_isSparse) {
-            listFaces();
-        } else if (!readParent()) {
+        if (!readParent()) {
             return;
         }
-        Index const count = _isSparse ? Index(_faces.size()) : _level.numFaces;
-        auto const forEach = [this](Index begin, Index end, auto const &function) {
-            for (Index i = begin; i < end; ++i) {
-                Index const face = _isSparse ? _faces[std::size_t(i)] : i;
+        bool const areFew = _parent.numHexagonalSteps + 1 >= kNumStepsToConstantMasks;
+        if (areFew) {
+            for (Index face : listFaces()) {
                 forEachCorner(face, [&](Index corner, QuadFlags flags) {
                     if (flags.HasAny()) {
-                        function(QuadCorner{corner, flags});
+                        _level.quadCorners.push_back({corner, flags});
                     }
                 });
             }
-        };
-        std::vector<std::size_t> const firsts =
-            ParallelSums<std::size_t>(count, [&](Index begin, Index end) {
-                std::size_t size = 0;
-                forEach(begin, end, [&size](QuadCorner const &) { ++size; });
-                return size;
+            return;
+        }
+        Buffer<QuadFlags> made;
+        made.Resize(std::size_t(_level.numCorners));
+        ParallelFor(_level.numFaces, [&](Index face) {
+            std::fill_n(made.data() + _level.faceFirstCorner[face], _level.GetFaceSize(face),
+                        QuadFlags());
+            forEachCorner(face, [&](Index corner, QuadFlags flags) {
+                if (flags.HasAny()) {
+                    made[std::size_t(corner)] = flags;
+                }
             });
-        _level.quadCorners.resize(firsts.back());
-        ParallelForRange(count, [&](Index begin, Index end) {
-            QuadCorner *next =
-                _level.quadCorners.data() + firsts[std::size_t(begin / kParallelRange)];
-            forEach(begin, end, [&next](QuadCorner const &corner) { *next++ = corner; });
         });
+        _level.quadCorners.Assign(made);
     }
 
 private:
     bool readParent();
-    void listFaces();
+    std::vector<Index> listFaces() const;
     QuadFlags getParent(Index corner) const {
-        if (!_isSparse) {
-            return _flags[std::size_t(corner)];
-        }
-        auto const found = FindCornerTags(_parent.quadCorners, corner, corner + 1);
-        return found.empty() ? QuadFlags() : found[0].flags;
+        return _flags.empty() ? _parent.quadCorners.GetFlags(corner) : _flags[std::size_t(corner)];
     }
     QuadFlags append(QuadFlags flags, int outDigit, int inDigit) const {
         return AppendToQuadFlags(flags, _parent.numHexagonalSteps, outDigit, inDigit);
@@ -95,28 +88,20 @@ private:
     Refinement const &_refinement;
     Level const &_parent;
     Level &_level;
-    bool const _isSparse;      // few of the parent's corners matter
-    Buffer<QuadFlags> _flags;  // else of the parent, by corner
-    std::vector<Index> _faces; // if so, those of the level that may have flags, ascending
+    Buffer<QuadFlags> _flags; // of the parent, by corner, before the first step
 };
 
 // Returns whether there are any flags.
 bool QuadFinder::readParent() {
     constexpr int kQuad = 4;
-    bool const isBase = _parent.numHexagonalSteps == 0;
+    if (_parent.numHexagonalSteps > 0) {
+        return !_parent.quadCorners.empty();
+    }
     std::vector<Index> const &sizes = _parent.faceSizes;
-    if (isBase ? std::find(sizes.begin(), sizes.end(), kQuad) == sizes.end()
-               : _parent.quadCorners.empty()) {
+    if (std::find(sizes.begin(), sizes.end(), kQuad) == sizes.end()) {
         return false;
     }
     _flags.Resize(std::size_t(_parent.numCorners));
-    if (!isBase) {
-        std::fill_n(_flags.data(), _flags.size(), QuadFlags());
-        for (QuadCorner const &quad : _parent.quadCorners) {
-            _flags[std::size_t(quad.corner)] = quad.flags;
-        }
-        return true;
-    }
     Buffer<QuadFlags> ofVerts;
     ofVerts.Resize(std::size_t(_parent.numVertices));
     ParallelFor(_parent.numVertices,
@@ -128,22 +113,24 @@ bool QuadFinder::readParent() {
                        [](QuadFlags flags) { return flags.HasAny(); });
 }
 
-// Those that flags of the parent make which go on.
-void QuadFinder::listFaces() {
-    auto const addEFace = [this](Index edge) {
+// Those of the level that flags of the parent make which go on, ascending.
+std::vector<Index> QuadFinder::listFaces() const {
+    std::vector<Index> faces;
+    auto const addEFace = [&](Index edge) {
         if (Index const face = _refinement.GetEdgeChildFace(edge); face != Far::INDEX_INVALID) {
-            _faces.push_back(face);
+            faces.push_back(face);
         }
     };
     for (auto const &[corner, flags] : _parent.quadCorners) {
         if (append(flags, 0, 0).HasAny()) {
             Index const face = _parent.FindFaceOfCorner(corner);
-            _faces.push_back(face);
+            faces.push_back(face);
             addEFace(_parent.faceEdges[corner]);
             addEFace(_parent.faceEdges[_parent.GetPrevCorner(face, corner)]);
         }
     }
-    SortUnique(_faces, _level.numFaces);
+    SortUnique(faces, _level.numFaces);
+    return faces;
 }
 
 // Calls function(corner, flags) for the corners of a face.

@@ -42,8 +42,8 @@ struct Refinement {
                                       : edgeChildFaces[e];
     }
 
-    /// Of an E-face, the corner where the first face of its edge begins to run along that; of a
-    /// V-face, one at its vertex.  The last vertex of the face was made of it.
+    /// For an E-face, the corner where the first face of its edge begins to run along the edge; for a
+    /// V-face, a corner at its vertex.  The last vertex of the face was made of this corner.
     Index GetFaceParentCorner(Index cFace) const {
         return GetChildVertexCorner(child->faceVerts[child->faceFirstCorner[cFace + 1] - 1]);
     }

@@ -23,7 +23,6 @@ namespace {
 constexpr int kHexagon = HexIndexing::kNumEFaceCorners;
 constexpr int kTrapezoid = HexIndexing::kNumBoundaryEFaceCorners;
 constexpr int kQuad = 4;
-constexpr int kFVertexFaces = 3; // around an F-vertex
 
 std::uint32_t getBits(float value) {
     std::uint32_t bits = 0;
@@ -87,7 +86,7 @@ LineShare findLineShare(int numSteps, TAGS const &ofCorner, int faceSize) {
     return {FindLineRow(numSteps, sharpest->face, sharpest->place), sharpest->face, most - second};
 }
 
-// What a tag is, in a face that begins at a corner: an even number of words.
+// Returns the words of a tag in a face that begins at a corner: an even number of them.
 template <typename TAG>
 auto getWords(TAG tag, Index firstCorner) {
     tag.corner -= firstCorner;
@@ -106,13 +105,19 @@ struct FaceTags {
     int diagonalEnd;
     TagRange<SectorCorner> sectorCorners;
     TagRange<IrregularCorner> irregularCorners;
-    TagRange<QuadCorner> quadCorners;
     TagRange<LineRowCorner> lineRowCorners;
+    std::array<QuadFlags, kHexagon> quadFlags; // by corner; none of larger faces have any
+
+    auto GetQuadWords() const {
+        std::array<std::uint32_t, sizeof quadFlags / sizeof(std::uint32_t)> words;
+        std::memcpy(words.data(), quadFlags.data(), sizeof words);
+        return words;
+    }
 
     bool operator==(FaceTags const &other) const {
         bool result = isHalf == other.isHalf && size == other.size && diagonal == other.diagonal &&
-                      diagonalEnd == other.diagonalEnd;
-        CornerTags::ForEachKind(
+                      diagonalEnd == other.diagonalEnd && GetQuadWords() == other.GetQuadWords();
+        CornerTags::ForEachListedKind(
             [&](auto const &tags, auto const &otherTags) {
                 auto const isSame = [&](auto const &x, auto const &y) {
                     return getWords(x, firstCorner) == getWords(y, other.firstCorner);
@@ -132,7 +137,7 @@ struct FaceTags {
                 hash = (hash ^ (std::uint64_t(high) << 32 | low)) * kFactor;
             };
             add(getBits(tags.diagonal), std::uint32_t(tags.diagonalEnd));
-            CornerTags::ForEachKind(
+            CornerTags::ForEachListedKind(
                 [&](auto const &ofKind) {
                     for (auto const &tag : ofKind) {
                         auto const words = getWords(tag, tags.firstCorner);
@@ -142,6 +147,10 @@ struct FaceTags {
                     }
                 },
                 tags);
+            auto const words = tags.GetQuadWords();
+            for (std::size_t i = 0; i < words.size(); i += 2) {
+                add(words[i], words[i + 1]);
+            }
             hash ^= hash >> 32;
             return std::size_t(hash);
         }
@@ -290,9 +299,13 @@ void RefinementRules::makeVertexWeights() {
         }
     };
 
-    auto const findOfQuad = [this](QuadCorner const &quad) -> OfCorner {
-        QuadRow const row = FindQuadRow(_level.numHexagonalSteps, quad.flags);
-        return {float(row.vertexWeight), quad.flags.GetShare()};
+    auto const findOfQuad = [this](Index corner) -> OfCorner {
+        QuadFlags const flags = _level.quadCorners.GetFlags(corner);
+        if (!flags.HasAny()) {
+            return {};
+        }
+        QuadRow const row = FindQuadRow(_level.numHexagonalSteps, flags);
+        return {float(row.vertexWeight), flags.GetShare()};
     };
     auto const listVertices = [this](auto const &tags) {
         std::vector<Index> verts;
@@ -302,22 +315,16 @@ void RefinementRules::makeVertexWeights() {
         SortUnique(verts);
         return verts;
     };
-    // In the constant levels few vertices have such weights.
+    // In the constant levels few vertices have such weights, and have rules of their own.
     if (_level.numHexagonalSteps >= kNumStepsToConstantMasks) {
         for (Index const vert : listVertices(_level.quadCorners)) {
-            setWeights(vert, 1, [&](Index corner) {
-                auto const quads = FindCornerTags(_level.quadCorners, corner, corner + 1);
-                return quads.empty() ? OfCorner() : findOfQuad(quads[0]);
-            });
+            setWeights(vert, 1, findOfQuad);
         }
     } else if (!_level.quadCorners.empty()) {
         Buffer<OfCorner> ofCorners;
         ofCorners.Resize(std::size_t(_level.numCorners));
-        std::fill_n(ofCorners.data(), ofCorners.size(), OfCorner());
-        ParallelFor(Index(_level.quadCorners.size()), [&](Index i) {
-            QuadCorner const &quad = _level.quadCorners[std::size_t(i)];
-            ofCorners[std::size_t(quad.corner)] = findOfQuad(quad);
-        });
+        ParallelFor(_level.numCorners,
+                    [&](Index corner) { ofCorners[std::size_t(corner)] = findOfQuad(corner); });
         for (Index vert = 0; vert < _level.numVertices; ++vert) {
             setWeights(vert, 1, [&](Index corner) { return ofCorners[std::size_t(corner)]; });
         }
@@ -370,7 +377,7 @@ public:
         std::unordered_map<FaceTags, int, FaceTags::Hash> ruleOfTags;
         FaceTags before = {}; // of the last face: those that follow one another are mostly alike
         FaceTags tags = {};
-        CornerTags::ForEachKind(
+        CornerTags::ForEachListedKind(
             [](auto const &all, auto &read) {
                 read = {all.data(), all.data()};
             },
@@ -407,11 +414,11 @@ private:
     std::vector<Index> findSharpFaces() const;
     void addFace(Index face, int rule);
     void readTags(Index face, FaceTags &tags);
-    QuadRow findQuadRow(QuadCorner const &quad) const {
-        return FindQuadRow(_level.numHexagonalSteps, quad.flags);
+    QuadRow findQuadRow(QuadFlags flags) const {
+        return FindQuadRow(_level.numHexagonalSteps, flags);
     }
     bool hasOwnRows(FaceTags const &tags) const;
-    Index findNextFace(FaceTags const &read) const;
+    Index findNextFace(FaceTags const &read);
     void addRule(FaceTags const &tags);
     void addRow(std::vector<double> const &row);
     static void addMask(double const *mask, int corner, bool isBackwards, double share,
@@ -438,8 +445,9 @@ private:
     IrregularMasks _masks;
     QuadMask _quadMask;
     std::unordered_map<int, std::vector<double>> _halfFaceWeights; // by number of corners
-    Index _endDense = 0; // behind the last face with a dense rule
-    Index _endRead = 0;  // behind the last face whose tags were read
+    Index _endDense = 0;  // behind the last face with a dense rule
+    Index _endRead = 0;   // behind the last face whose tags were read
+    Index _nextQuad = -1; // the first corner behind that with flags of quads, or the end
 };
 
 // Faces with a feature that is no tag of a corner, ascending.
@@ -480,7 +488,7 @@ void RefinementRules::DenseRuleMaker::readTags(Index face, FaceTags &tags) {
     if (!_isVertex) {
         return;
     }
-    CornerTags::ForEachKind(
+    CornerTags::ForEachListedKind(
         [end = tags.firstCorner + tags.size](auto const &all, auto &read) {
             read.first = read.behind;
             while (read.behind != all.data() + all.size() && read.behind->corner < end) {
@@ -488,12 +496,20 @@ void RefinementRules::DenseRuleMaker::readTags(Index face, FaceTags &tags) {
             }
         },
         _level, tags);
+    for (int i = 0; i < kHexagon; ++i) {
+        tags.quadFlags[std::size_t(i)] =
+            i < tags.size ? _level.quadCorners.GetFlags(tags.firstCorner + i) : QuadFlags();
+    }
 }
 
 // The first face with tags of corners behind those that have been read, mostly the next one; else the end.
-Index RefinementRules::DenseRuleMaker::findNextFace(FaceTags const &read) const {
-    Index corner = _level.numCorners;
-    CornerTags::ForEachKind(
+Index RefinementRules::DenseRuleMaker::findNextFace(FaceTags const &read) {
+    Index const endRead = _level.faceFirstCorner[_endRead];
+    if (_nextQuad < endRead) {
+        _nextQuad = QuadCorners::Iterator(_level.quadCorners, endRead, _level.numCorners)->corner;
+    }
+    Index corner = _nextQuad;
+    CornerTags::ForEachListedKind(
         [&corner](auto const &all, auto const &ofKind) {
             if (ofKind.behind != all.data() + all.size()) {
                 corner = std::min(corner, ofKind.behind->corner);
@@ -516,10 +532,10 @@ void RefinementRules::DenseRuleMaker::addRow(std::vector<double> const &row) {
 bool RefinementRules::DenseRuleMaker::hasOwnRows(FaceTags const &tags) const {
     return tags.isHalf || tags.diagonal > 0 || !tags.sectorCorners.empty() ||
            !tags.irregularCorners.empty() ||
-           (tags.size == kHexagon && std::any_of(tags.quadCorners.begin(), tags.quadCorners.end(),
-                                                 [this](QuadCorner const &quad) {
-                                                     return quad.flags.GetShare() > 0 &&
-                                                            findQuadRow(quad).mask != nullptr;
+           (tags.size == kHexagon && std::any_of(tags.quadFlags.begin(), tags.quadFlags.end(),
+                                                 [this](QuadFlags flags) {
+                                                     return flags.GetShare() > 0 &&
+                                                            findQuadRow(flags).mask != nullptr;
                                                  })) ||
            std::any_of(tags.lineRowCorners.begin(), tags.lineRowCorners.end(),
                        [this](LineRowCorner const &tag) {
@@ -535,7 +551,6 @@ void RefinementRules::DenseRuleMaker::addRule(FaceTags const &tags) {
     double const sharp = tags.isHalf ? 1 : tags.diagonal;
     SectorCorner const *sector = tags.sectorCorners.begin();
     IrregularCorner const *irregular = tags.irregularCorners.begin();
-    QuadCorner const *quad = tags.quadCorners.begin();
     LineRowCorner const *line = tags.lineRowCorners.begin();
     for (int i = 0; i < size; ++i) {
         Index const corner = tags.firstCorner + i;
@@ -552,11 +567,10 @@ void RefinementRules::DenseRuleMaker::addRule(FaceTags const &tags) {
         IrregularCorner const *const ofIrregular =
             irregular != tags.irregularCorners.end() && irregular->corner == corner ? irregular++
                                                                                     : nullptr;
-        QuadCorner const *const ofQuad =
-            quad != tags.quadCorners.end() && quad->corner == corner ? quad++ : nullptr;
+        QuadFlags const flags = size == kHexagon ? tags.quadFlags[std::size_t(i)] : QuadFlags();
         QuadRow const byPath =
-            ofQuad && size == kHexagon ? findQuadRow(*ofQuad) : QuadRow{nullptr, false, -1, -1};
-        float const ofPath = byPath.mask ? ofQuad->flags.GetShare() : 0;
+            flags.HasAny() ? findQuadRow(flags) : QuadRow{nullptr, false, -1, -1};
+        float const ofPath = byPath.mask ? flags.GetShare() : 0;
         LineRowCorner const *const lines = line;
         while (line != tags.lineRowCorners.end() && line->corner == corner) {
             ++line;
@@ -580,7 +594,7 @@ void RefinementRules::DenseRuleMaker::addRule(FaceTags const &tags) {
         }
         row[std::size_t(i)] += towards;
         if (sharp > 0) {
-            // Of a face cut by its diagonal, each half follows the mask of a half face V, W, Q, P ...: V and W are
+            // If a face is cut by its diagonal, each half follows the mask of a half face V, W, Q, P ...: V and W are
             // the ends of the diagonal, the others the vertices between them.  At the ends both halves have the
             // same weights.
             std::vector<int> half;

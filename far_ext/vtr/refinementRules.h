@@ -12,6 +12,9 @@
 
 namespace OpenSubdivHex::FarExt::internal {
 
+/// Faces around an F-vertex inside the mesh; on a border there are fewer.
+inline constexpr int kFVertexFaces = 3;
+
 /// \brief How the F-vertices of a face are made of its vertices: a row of weights for each corner.
 ///
 /// Faces with equal rows share a rule.  The rows of a *circulant* rule are one mask, turned; those of a *dense*
@@ -49,7 +52,7 @@ struct VertexRule {
     /// Where faces differ, their weights, as Level::vertFaces has the faces; else null.  All are 0 or none.
     double const *faceWeights;
 
-    /// Of the F-vertex in face \p i around the vertex.
+    /// The weight of the F-vertex in face \p i around the vertex.
     double GetFaceWeight(int i) const { return faceWeights ? faceWeights[i] : faceWeight; }
     bool HasFaces() const { return faceWeight > 0; }
 };
@@ -137,8 +140,8 @@ public:
                                  : weightedRule(vert, weights);
     }
     /// @name Vertices with weights by face
-    /// Of those that have no rule of their own: the weight of the vertex, and behind it those of the F-vertices around
-    /// it.  Vertices with equal weights share these.
+    /// Weights of vertices without a rule of their own: the weight of the vertex, then the weights of the F-vertices
+    /// around it.  Vertices with equal weights share them.
     /// @{
     /// In place of the position of plain vertices, whatever their number of faces: there are the weights of those with
     /// three.

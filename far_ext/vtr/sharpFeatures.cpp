@@ -165,7 +165,7 @@ SharpVertex maskOfRule(Level const &level, FaceMask faceMask, Crease const &crea
 }
 
 SharpVertex blend(SharpVertex const &parent, SharpVertex const &child, double parentWeight) {
-    // Of two rules in sequence at most one is a crease, so that its neighbours stand alone; a
+    // At most one of two rules in sequence is a crease, so that its neighbours stand alone; a
     // corner and a smooth mask have neighbours of weight 0.
     SharpVertex result = parent.rule == Crease::RULE_CREASE ? parent : child;
     double const childWeight = 1 - parentWeight;
@@ -587,6 +587,9 @@ void refineDiagonalsOfTruncation(Refinement const &refinement, SharpnessRefiner 
         };
         child.diagonalSharpness[crossed.face] =
             std::min(getSharpness(kDiagonalStart), getSharpness(crossed.end));
+        if (Crease::IsInfinite(child.diagonalSharpness[crossed.face])) {
+            child.cutFaces.push_back(crossed);
+        }
     }
     dropIfSmooth(child.diagonalSharpness);
 }
@@ -650,6 +653,7 @@ void RefineTags(Refinement const &refinement, Sdc::Options sdcOptions, Level &ch
     child.diagonalSharpness.Resize(0);
     child.vertSharpness.Resize(0);
     child.faceHoles.Resize(0);
+    child.cutFaces.clear();
     child.nonManifoldVerts.clear();
     for (Index vert : parent.nonManifoldVerts) {
         if (Index const cVert = refinement.GetVertexChildVertex(vert);

@@ -88,8 +88,8 @@ int TruncationMask::countSector(Index corner) const {
     return isDart ? count : 2 * count;
 }
 
-// What a vertex and those around it have of the centroids in the mask on the edge that starts in a
-// corner of it; each source once where all faces are triangles.
+// Adds what the centroids weigh in the mask on the edge that starts in a corner of the vertex, as weights of the
+// vertex and of its neighbors; each source once where all faces are triangles.
 void TruncationMask::addCentroids(Index vert, Index corner, TruncateMask const &mask,
                                   Sources &sources) const {
     FaceCorner const across = _parent.GetCornerAcross(corner);

@@ -72,9 +72,6 @@ private:
     void setCut(Index corner, bool isEndCut) {
         _cuts[FindEdgeEnd(_mesh, corner)] = isEndCut ? EndCut::Cut : EndCut::Whole;
     }
-    // The faces that make half a hexagon.
-    static constexpr Index kHalfHexagonFaces = 3;
-
     // Whether a line passes the vertex whose polygon has two cuts.
     bool passes(Index vert, VertexFan const &fan) const {
         SharpVertex const *const sharp = _mesh.FindSharpVertex(vert);
@@ -95,12 +92,17 @@ private:
         if (std::min(before, behind) < 2 || std::max(before, behind) > kMaxPassedFaces) {
             return false;
         }
-        // Where faces are kept apart, so must the halves of the polygon be at every level, as those of hexagons are.
-        if (fan.isClosed && (before != kHalfHexagonFaces || behind != kHalfHexagonFaces)) {
+        // Where faces are kept apart, so must the halves of the polygon be: as surface faces.
+        if (fan.isClosed) {
+            bool isParting = false;
+            bool isInfinite = true;
             for (Index const k : cuts) {
-                if (partsFaces(_mesh.faceEdges[_mesh.GetVertexCorner(k)])) {
-                    return false;
-                }
+                Index const edge = _mesh.faceEdges[_mesh.GetVertexCorner(k)];
+                isParting = isParting || partsFaces(edge);
+                isInfinite = isInfinite && Crease::IsInfinite(_mesh.GetEdgeSharpness(edge));
+            }
+            if (isParting && !isInfinite) {
+                return false;
             }
         }
         auto const passesValues = [&](FVarChannel const &channel) {

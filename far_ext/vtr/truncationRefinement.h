@@ -28,8 +28,7 @@ using EndCuts = std::vector<EndCut>;
 ///
 /// A line passes a vertex whose rule is that of a crease if it is cut at the two edges of that alone, and has two to
 /// kMaxPassedFaces faces on each side; unless it is non-manifold, or in a channel one of the edges is a seam and the other
-/// is not, or a value is sharp there, or the edges would be cut if they were not sharp, and the polygon is no hexagon with
-/// three faces on each side.
+/// is not, or a value is sharp there, or the edges would be cut if they were not sharp, and are not both infinitely sharp.
 EndCuts FindEndCuts(Hierarchy const &base, Far::ConstIndexArray labels);
 
 /// Cuts for the value mesh of a channel of \p mesh, both of level 0.

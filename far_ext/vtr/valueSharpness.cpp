@@ -53,7 +53,7 @@ private:
     Level const &_mesh;
     Index const *_faceValues;
     Interpolation _interpolation;
-    // Of the vertex: its corners, and those before and behind them in their faces.
+    // The corners of the vertex, and the corners before and behind them in their faces.
     std::vector<Index> _corners;
     std::vector<Index> _prevCorners;
     std::vector<Index> _nextCorners;
@@ -85,7 +85,7 @@ bool VertexValues::isSeam(int face) const {
                                                 _faceValues[_prevCorners[std::size_t(before)]]);
 }
 
-// The same for any edge of a non-manifold vertex that has one value: edges of one line are one.
+// Variant for any edge of a non-manifold vertex that has one value: edges of one line count as one.
 bool VertexValues::isSeamAtNonManifold() const {
     struct End {
         Index line;
@@ -186,8 +186,7 @@ bool VertexValues::staysAsOne() const {
            (_interpolation == Sdc::Options::FVAR_LINEAR_CORNERS_PLUS2 && (isDart || isConcave));
 }
 
-// Of two values the one depends on the other from FVAR_LINEAR_CORNERS_PLUS1 on: other is null
-// otherwise.
+// From FVAR_LINEAR_CORNERS_PLUS1 on, one of two values depends on the other; without such a value, other is null.
 float VertexValues::getSharpness(Span const &span, Span const *other, float vertSharpness) const {
     auto const isBroken = [](Span const &any) { return any.numRuns > 1 || any.isParted; };
     bool const isCorner = span.numFaces == 1 && _interpolation != Sdc::Options::FVAR_LINEAR_NONE;

@@ -71,7 +71,7 @@ struct FanItem {
     float sharpness;     ///< of an edge or diagonal; 0 for smooth ones and free boundaries
 };
 
-/// \brief What is met on the way through a fan: from boundary to boundary or, when closed, from the
+/// \brief The edges and faces of a fan in turn: from boundary to boundary or, when closed, from the
 /// edge before the first face to the last face.
 struct FanItems {
     std::vector<FanItem> items;

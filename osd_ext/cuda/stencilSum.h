@@ -38,8 +38,8 @@ struct StencilSum {
     }
 };
 
-/// \brief What one of \c LANES threads sums up of a stencil: every LANES'th weight from \p lane on, so
-/// that threads beside each other read indices and weights that are.
+/// \brief Sums up the part of a stencil that one of \c LANES threads has: every LANES'th weight from \p lane on, so
+/// that neighbouring threads read neighbouring indices and weights.
 ///
 /// The sums of the lanes are added in pairs: those LANES / 2 apart first.
 template <int LENGTH, int LANES>

@@ -146,8 +146,8 @@ private:
     std::vector<Places> _places;
     DeviceBuffer _indices;
     DeviceBuffer _weights;
-    // Of a face-varying channel some of whose values several vertices of its value mesh share: the
-    // value of each is an index, from here on.
+    // For a face-varying channel some of whose values several vertices of its value mesh share: the
+    // value of each vertex is an index, from here on.
     int _numValueVertices = 0;
     std::uint32_t _firstValue = 0;
     DeviceBuffer _controlValues; // by vertex of that value mesh

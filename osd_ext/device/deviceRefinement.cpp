@@ -395,7 +395,7 @@ void Maker::listVertex(Index vert) {
                    rule.faceWeights ? numCorners : 1);
         return firstWeight;
     };
-    // Those with weights by face share these.
+    // Rules with weights by face share these weights.
     std::uint32_t const firstWeight =
         rule.faceWeights ? find(_weightsByFace,
                                 int(rule.faceWeights - _rules.GetAllVertexWeights().data()), addAll)
@@ -435,8 +435,8 @@ void Maker::Fill(std::int32_t *indices) const {
     }
     for (DeviceVertexRun const &run : _result.vertexRuns) {
         if (_result.averagesFaces) {
-            // What is added in the order of the first two is turned by one, so that all but those
-            // that are added in turn have the last two first.
+            // Sums in the order of the first two are turned by one, so that all sums but those
+            // in turn add the last two first.
             bool const isTurned = getSumOrder(Index(run.firstVertex)) == SumOrder::FirstTwo;
             Index const order[kRunValence] = {isTurned ? 2 : 0, isTurned ? 0 : 1, isTurned ? 1 : 2};
             Index const first = _level.vertFirstFace[std::size_t(run.firstVertex)];

@@ -7,7 +7,7 @@ struct Six {
     float x[6];
 };
 
-// Of what a vertex of a regular face has around it, the frequencies: see limitKernelTemplate.h.
+// The frequencies of values around a regular face: see limitKernelTemplate.h.
 struct Waves {
     float mean;
     float cosine1;

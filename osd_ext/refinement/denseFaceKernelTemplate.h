@@ -16,7 +16,7 @@ namespace {
 
 /// \brief The portable SIMD level, whose vectors hold a quad of one row.
 ///
-/// Those of other levels hold quads of some rows, which are summed up side by side; they have the same
+/// The types of other SIMD levels hold quads of some rows, which are summed up side by side; they have the same
 /// functions, for COUNT rows, kNumRows at most.
 struct OneRow {
     static constexpr int kNumRows = 1;

@@ -253,7 +253,7 @@ struct LatticeKernel {
 private:
     using Waves = LatticeWaves<SIMD, FACE_SIZE>;
 
-    /// Of half the sum of the two orbits of a pair, and of half their difference in the mirror.
+    /// Waves of half the sum of the two orbits of a pair, and of half their difference in the mirror.
     struct PairWaves {
         Waves sums[NUM_OUTPUTS];
         Waves differences[NUM_OUTPUTS];

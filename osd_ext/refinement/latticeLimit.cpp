@@ -71,7 +71,7 @@ bool areConsecutive(LatticeFaces::Set const &set, std::vector<Index> const &face
     });
 }
 
-// The same of LatticeTask::areConsecutive, for outputs that begin with number begin.
+// Finds LatticeTask::areConsecutive for outputs that begin with number begin.
 bool isPairConsecutive(LatticeFaces::Set const &set, std::vector<Index> const &faces, int begin) {
     int const size = set.patch.GetFaceSize();
     std::vector<int> images;

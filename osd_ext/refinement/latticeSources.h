@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// What the kernel of lattice faces reads: compiled once per SIMD level with it, by the rules of
+// Sources of the kernel of lattice faces: compiled once per SIMD level with the kernel, by the rules of
 // limitKernelTemplate.h.
 #ifndef OPENSUBDIVHEX_OSD_EXT_REFINEMENT_LATTICE_SOURCES_H
 #define OPENSUBDIVHEX_OSD_EXT_REFINEMENT_LATTICE_SOURCES_H
@@ -16,7 +16,7 @@ namespace {
 
 /// \brief The waves of all sources of some faces, as the weights of LatticeWeights take them.
 ///
-/// Of the two orbits of a pair these are their sum, which is like an orbit on an axis, and their
+/// The two orbits of a pair become their sum, which is like an orbit on an axis, and their
 /// difference, which changes its sign in the mirror: its waves are turned by a quarter, so that one
 /// weight stands for cosine and sine.
 template <class SIMD, int FACE_SIZE, bool IS_COMPACT>

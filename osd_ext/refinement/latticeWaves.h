@@ -28,7 +28,7 @@ struct LatticeWaves {
     T alternating;
 };
 
-/// That of values, but that the mean and what alternates are n times as large, and the others n / 2.
+/// Returns the waves of values, but mean and alternating wave n times as large, the other waves n / 2 times.
 template <class SIMD>
 OPENSUBDIVHEX_INLINE LatticeWaves<SIMD, 3> findWaves(typename SIMD::Vector const (&x)[3]) {
     using Vector = typename SIMD::Vector;
@@ -115,7 +115,7 @@ OPENSUBDIVHEX_INLINE void findValues(LatticeWaves<SIMD, 6> const &waves,
     x[5] = even[2] + minusThird;
 }
 
-/// The same of waves whose sines have the other sign: the values in the mirror.
+/// Finds the values in the mirror: of waves whose sines have the other sign.
 template <class SIMD, int FACE_SIZE>
 OPENSUBDIVHEX_INLINE void findMirroredValues(LatticeWaves<SIMD, FACE_SIZE> const &waves,
                                              typename SIMD::Vector (&x)[FACE_SIZE]) {

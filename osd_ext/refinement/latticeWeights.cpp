@@ -229,7 +229,7 @@ void AddOrbitWeights(SourceOrbits const &sources, LatticePatch const &patch,
     if (patch.GetFaceSize() % 2 == 0) {
         addSingle(patch.GetFaceSize() / 2);
     }
-    // Of the others the conjugate, which has the same weights, is added, too.
+    // For other frequencies the conjugate, which has the same weights, is added, too.
     for (int frequency = 1; 2 * frequency < patch.GetFaceSize(); ++frequency) {
         std::vector<std::vector<double>> both;
         addRowsOf(frequency, both, both);

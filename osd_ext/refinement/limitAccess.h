@@ -19,7 +19,7 @@ constexpr int kPoint = RegularFaceGroup::kPointStride;
 
 /// \brief The portable SIMD level, whose vectors hold four floats of one face.
 ///
-/// Those of other levels hold several faces; they have the same functions.
+/// The types of other SIMD levels hold several faces; they have the same functions.
 struct OneFace {
     static constexpr int kNumFaces = 1;
     using Vector = Quad;

@@ -23,12 +23,12 @@ namespace {
 constexpr double kSine = 0.86602540378443864676; ///< of 60 degrees
 constexpr int kPairs = 2;                        ///< among the sources, those between corners
 
-/// Of the six weights that a mask has for one kind of source.
+/// The six weights that a mask has for one kind of source.
 struct SourceWeights {
     double const *weights;
     int kind;
 
-    /// What the wave of a frequency is multiplied by, where the weights are symmetric or change
+    /// The factor of the wave of a frequency, where the weights are symmetric or change
     /// their sign.
     double SumCosines(int frequency) const { return sum(frequency, 0); }
     double SumSines(int frequency) const { return sum(frequency, kPi / 2); }

@@ -17,7 +17,7 @@ struct Scalar {
     using Vector = float;
 };
 
-/// What the weights of a mask are for: vertices of the face, their neighbours, pairs.
+/// Kinds of sources of a mask: vertices of the face, their neighbours, pairs.
 constexpr int kNumRegularSources = 3;
 
 /// For the waves of a symmetric mask; alternating pairs have no part.
@@ -159,9 +159,9 @@ struct LatticeTask : LimitTask {
 struct LimitKernel {
     /// Writes the outputs of groups [begin, end).
     void (*evaluateFaces)(RegularLimitTask const &task, Far::Index begin, Far::Index end);
-    /// The same.
+    /// Evaluates vertices [begin, end).
     void (*evaluateVertices)(VertexLimitTask const &task, Far::Index begin, Far::Index end);
-    /// The same.
+    /// Evaluates lattice faces [begin, end).
     void (*evaluateLattice)(LatticeTask const &task, Far::Index begin, Far::Index end);
 };
 

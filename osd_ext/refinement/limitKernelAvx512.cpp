@@ -94,7 +94,7 @@ private:
     // Two points of each face, side by side.
     static OPENSUBDIVHEX_INLINE void joinPairs(Vector first, Vector second,
                                                __m256 (&ofFaces)[kNumFaces]) {
-        // Of two faces each: numbers from 16 on are floats of the second vector.
+        // Lanes of two faces each: numbers from 16 on are floats of the second vector.
         __m512i const ofFirstFaces =
             _mm512_setr_epi32(0, 1, 2, 16, 17, 18, 3, 19, 4, 5, 6, 20, 21, 22, 7, 23);
         __m512i const ofLastFaces = _mm512_add_epi32(ofFirstFaces, _mm512_set1_epi32(8));

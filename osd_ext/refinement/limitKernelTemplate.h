@@ -21,7 +21,7 @@ using FarExt::internal::kRegularFaceSize;
 
 constexpr int kHalf = kRegularFaceSize / 2;
 
-/// \brief Of what a vertex of a regular face has around it, the frequencies: six values x_i, one for
+/// \brief The frequencies of values around a regular face: six values x_i, one for
 /// each corner, are a sum of waves around the face.
 ///
 /// A mask that is the same for all corners multiplies each wave by a number, or mixes its cosine with
@@ -63,8 +63,8 @@ findWavesOfCorners(typename SIMD::Vector const (&x)[kRegularFaceSize]) {
     return waves;
 }
 
-/// The same for values between the corners, behind them: waves begin at corner 0, so that it is the
-/// first cosine that is short of the factor, and the first sine not.
+/// Variant for values between the corners, behind them: waves begin at corner 0, so that the
+/// first cosine lacks the factor, and the first sine does not.
 template <class SIMD>
 OPENSUBDIVHEX_INLINE FaceWaves<SIMD>
 findWavesOfEdges(typename SIMD::Vector const (&x)[kRegularFaceSize]) {

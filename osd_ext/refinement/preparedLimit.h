@@ -29,7 +29,7 @@ public:
     /// Elements of all vertices of the level: points, and behind them du and dv or nothing.
     using Outputs = std::vector<Elements<float>>;
 
-    /// Of side 0 of each vertex of the level of \p rows, one of a refiner's \p mesh.
+    /// Prepares side 0 of each vertex of the level of \p rows, a level of \p mesh.
     /// \return  as LimitRows, or CheckLimitPlaces() of a level
     FarExt::CallStatus Prepare(FarExt::internal::MeshLevels const &mesh,
                                FarExt::HexSchemeOptions const &schemeOptions,

@@ -15,6 +15,7 @@ using Far::Index;
 using FarExt::internal::FaceRule;
 using FarExt::internal::ForEachRun;
 using FarExt::internal::InsertUnique;
+using FarExt::internal::kFVertexFaces;
 using FarExt::internal::Level;
 using FarExt::internal::ParallelFor;
 using FarExt::internal::Refinement;
@@ -24,7 +25,6 @@ using FarExt::internal::VertexRule;
 namespace {
 
 constexpr int kMaxUnrolledSize = 6;
-constexpr int kFVertexFaces = 3; // around an F-vertex, at most
 /// Faces and vertices that a thread takes at a time, of some microseconds.
 constexpr Index kFaceBatch = 1024;
 constexpr Index kVertexBatch = 4096;
@@ -107,7 +107,7 @@ public:
     // The position of those of a face, row by row.
     std::size_t Find(Index face) {
         FaceRule const rule = _rules.GetFaceRule(face);
-        // Of circulant rules, which are told by the size, negative numbers.
+        // Circulant rules, which their size identifies, have negative keys.
         int const key = rule.IsCirculant() ? -rule.GetSize() : _rules.FindRun(face)->rule;
         auto const [found, isNew] = _positions.try_emplace(key, _weights.size());
         if (isNew) {
@@ -299,7 +299,7 @@ PlainFaceMask MakePlainFaceMask(FaceRule const &circulant) {
     double const all = weights[size > PlainFaceMask::kMinSize ? 2 : 1];
     mask.self = float(weights[0] - all);
     mask.neighbor = float(weights[1] - all);
-    // Of two that are the same but for rounding, none is there for the kernel.
+    // Two weights that differ by rounding alone count as equal: the kernel then adds none.
     mask.opposite = hasOpposite ? float(weights[size / 2]) - float(all) : 0;
     mask.all = float(all);
     return mask;

@@ -69,7 +69,7 @@ struct WeightedVertex {
     Far::Index child; ///< in the level that is made
     float vertexWeight;
     float faceWeight;
-    /// Of the F-vertices around it, in vertexWeights; where kEqual, all have faceWeight.
+    /// Where weights of the F-vertices around it begin, in vertexWeights; kEqual: all have faceWeight.
     int firstFaceWeight;
     static constexpr int kEqual = -1;
     Far::Index neighbors[2];
@@ -131,7 +131,7 @@ struct PreparedRefinement {
     std::vector<float> vertexWeights;
     std::vector<DenseFaceMask> denseMasks; ///< of hexagons, by the number of their rule
 
-    // Of listed vertices.
+    // Rules of listed vertices.
     std::vector<Far::Index> listedSources;
     std::vector<float> listedWeights;
 

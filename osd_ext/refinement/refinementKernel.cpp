@@ -11,12 +11,11 @@
 namespace OpenSubdivHex::OsdExt::internal {
 
 using Far::Index;
+using FarExt::internal::kFVertexFaces;
 using FarExt::internal::Level;
 using FarExt::internal::RefinementRules;
 
 namespace {
-
-constexpr int kFVertexFaces = 3; // around an F-vertex
 
 // A plain face of any size.
 template <class ACCESS>
@@ -165,7 +164,7 @@ OPENSUBDIVHEX_INLINE auto sumOfWeighted(float const *weights, Elements<float con
     return Spread(weights[0]) * own + sum;
 }
 
-// What is read besides is of faces that are done, or of the level before.
+// It also reads vertices of faces that are done, and of the level before.
 template <class ACCESS>
 void refineVertexRun(RefinementTask const &task, VertexRun run) {
     PreparedRefinement const &refinement = *task.refinement;

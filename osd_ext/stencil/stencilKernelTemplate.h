@@ -142,8 +142,8 @@ OPENSUBDIVHEX_NOINLINE std::size_t sumStencils(StencilTask const &task, Source<S
     return firstWeight;
 }
 
-/// \brief The same of the blocks from \p block on that have ROWS stencils each: up to \p end or the
-/// first with another number, which is returned.
+/// \brief Sums up the blocks from \p block on that have ROWS stencils each: up to \p end or the
+/// first block with another number, which is returned.
 template <class SIMD, int WIDTH, int ROWS, int STRIDE>
 OPENSUBDIVHEX_NOINLINE StencilBlock const *sumBlocks(StencilTask const &task, Source<STRIDE> src,
                                                      int firstFloat, StencilBlock const *block,

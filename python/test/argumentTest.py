@@ -190,7 +190,7 @@ def test_sources_of_any_type_and_layout(refiner, which):
     with np.errstate(all="ignore"):
         assert np.isnan(run(np.full((8, 3), np.nan))).all()
         assert np.isinf(run(np.full(8, -np.inf))).all()
-    # What is read is a copy.
+    # Arrays are copied before they are read.
     buffer = np.zeros((refiner.get_level(2).num_vertices + 8, 3), np.float32)
     buffer[:8] = CUBE_POSITIONS[::-1]
     np.testing.assert_array_equal(run(buffer[7::-1], buffer[:-8]), expected)

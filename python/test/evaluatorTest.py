@@ -205,7 +205,7 @@ def test_all_ways_to_the_limit_agree(full_refiner, level):
         np.testing.assert_allclose(values, wanted, atol=1e-4)
     np.testing.assert_array_equal(evaluator.evaluate_limit(POSITIONS, level), found[0])
 
-    # Of the vertices of the level, in both precisions.
+    # Tables of the vertices of the level, in both precisions.
     for dtype in (np.float32, np.float64):
         own = osh.LimitStencilTable(full_refiner, level, factorize_intermediate_levels=False,
                                     dtype=dtype)

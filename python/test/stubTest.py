@@ -73,7 +73,7 @@ def test_signatures(name, value, stub):
     if documented is None:  # a class whose docstring begins with its constructor
         pytest.fail(f"{name} has no signature in its docstring")
     assert split_arguments(documented.group(1)) == expected
-    # What the function itself says it takes.
+    # The parameters that the function itself names.
     with pytest.raises(TypeError) as caught:
         value(no_such_argument=1)
     taken = re.search(r"1\. [\w.]*\((.*)\)", str(caught.value)).group(1)

@@ -66,6 +66,60 @@ def test_surfaces_behind_a_first_step_are_those_of_level_1(first_step):
         factory.vertex_surface(0)
 
 
+def make_roof(angle):
+    """Rows of triangles in two planes that meet along a crease, y = 0, with a seam there."""
+    xs, ys = np.meshgrid(np.arange(7), np.arange(-2, 3))
+    positions = np.stack([xs, np.where(ys < 0, ys * np.cos(angle), ys),
+                          np.where(ys < 0, ys * np.sin(angle), 0)], axis=-1).reshape(-1, 3)
+    number = np.arange(35).reshape(5, 7)
+    a, b, c, d = number[:-1, :-1], number[:-1, 1:], number[1:, 1:], number[1:, :-1]
+    faces = np.stack([a, b, c, a, c, d], axis=-1).reshape(-1, 3)
+    ridge = number[2]
+    values = faces + np.where(np.arange(len(faces)) < 24, 0, 35)[:, None]
+    return positions, faces, np.stack([ridge[:-1], ridge[1:]], axis=-1), values
+
+
+def test_faces_that_a_crease_cuts_have_a_normal_on_each_side():
+    angle = 0.6
+    positions, faces, creases, values = make_roof(angle)
+    refiner = osh.TopologyRefiner(
+        faces, face_mask="smooth", first_step="truncate",
+        creases=(creases, np.full(len(creases), 10.0)), fvar_channels=[values],
+        vtx_boundary_interpolation="edge_only")
+    refiner.refine_uniform(1, full_topology_in_last_level=True)
+    level = refiner.get_level(1)
+    points = osh.RefinementEvaluator(refiner).evaluate(positions)
+    factory = osh.SurfaceFactory(refiner)
+    level_faces, halves = factory.get_level_faces()
+    assert factory.num_faces == level.num_faces + 5 == len(level_faces)
+    assert factory.num_edges == level.num_edges + 5
+    np.testing.assert_array_equal(halves, np.arange(factory.num_faces) >= level.num_faces)
+    for second in range(level.num_faces, factory.num_faces):
+        normals, ends = [], []
+        for face in (level_faces[second], second):
+            surface = factory.vertex_surface(face)
+            assert surface.is_half and surface.face_size == 4
+            pattern = osh.LevelTessellation(4, 2, is_half=True)
+            found, du, dv = surface.evaluate_with_derivatives(pattern, points)
+            normal = np.cross(du, dv)
+            normal /= np.linalg.norm(normal, axis=1)[:, None]
+            np.testing.assert_allclose(normal, normal[:1].repeat(len(normal), axis=0), atol=1e-6)
+            normals.append(normal[0])
+            ends.append(found[:pattern.num_boundary_coords])
+            vertices = factory.get_face_vertices(face)
+            corners = level.face_vertices[level.face_offsets[level_faces[second]]:][:6]
+            np.testing.assert_array_equal(
+                vertices, corners[[0, 3, 4, 5] if face < second else [3, 0, 1, 2]])
+            assert factory.get_face_edges(face)[0] == level.num_edges + second - level.num_faces
+            with pytest.raises(ValueError, match="4 edges, but the face has 4 edges, a half"):
+                surface.evaluate(osh.LevelTessellation(4, 2), points)
+        assert abs(np.arccos(normals[0] @ normals[1]) - angle) < 1e-6
+        along = [points_of_half[np.abs(points_of_half[:, 1:]).max(axis=1) < 1e-12]
+                 for points_of_half in ends]
+        np.testing.assert_array_equal(along[0], along[1][::-1])
+        assert len(along[0]) > 3
+
+
 def test_vertices_behind_a_first_step_are_points_of_surfaces():
     refiner = make_refiner(first_step="truncate")
     refiner.refine_uniform(3, full_topology_in_last_level=True)

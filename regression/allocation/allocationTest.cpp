@@ -197,7 +197,7 @@ std::vector<Step> const &getSteps() {
     return steps;
 }
 
-/// What std::terminate prints.
+/// Printed by std::terminate.
 char const *currentStep = "";
 long currentNumber = 0;
 
@@ -282,7 +282,7 @@ void runSteps(Subject const &subject, long maxTries) {
 
 } // namespace
 
-// What leaks in a refiner, which keeps memory for the next refinement, shows when it is gone.
+// A refiner keeps memory for the next refinement: its leaks show when it is gone.
 TEST(Allocation, RefinersThatRanOutOfMemoryLeaveNothing) {
     Subject const subject(GetFeatureShape("cubeOfCharts"), 2, 1);
     for (int round = 0; round < 2; ++round) {

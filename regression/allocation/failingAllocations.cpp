@@ -9,7 +9,7 @@
 
 #include <malloc.h>
 
-// What the linker puts in place of malloc and free, by its option --wrap.
+// The linker puts these in the place of malloc and free, by its option --wrap.
 extern "C" {
 void *__real_malloc(std::size_t size);
 void __real_free(void *memory);

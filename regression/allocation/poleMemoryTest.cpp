@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// What lies at a pole of many faces takes memory in proportion to these.
+// Memory at a pole of many faces is in proportion to their number.
 #include "failingAllocations.h"
 
 #include "bfr_ext/cellTree.h"

@@ -43,7 +43,7 @@ public:
 
     FarExt::TopologyRefiner const &GetRefiner() const { return *_refiner; }
 
-    /// What a new stream takes.
+    /// Returns the memory of a new stream.
     ///
     /// \param source  PatchLevels, or a CellForest
     template <typename SOURCE>

@@ -173,7 +173,7 @@ CornerWeights findMask(SearchedMasks const &searched, LevelWeights const &weight
 bool hasQuadMask(Level const &level, int corner) {
     auto const quad = FarExt::internal::FindCornerTags(level.quadCorners, corner, corner + 1);
     return !quad.empty() &&
-           FarExt::internal::FindQuadRow(level.numHexagonalSteps, quad[0].flags).mask;
+           FarExt::internal::FindQuadRow(level.numHexagonalSteps, quad.front().flags).mask;
 }
 
 /// Faces of a plane around a vertex, lifted by very little to a quadratic form, or to x y.

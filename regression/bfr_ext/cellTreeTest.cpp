@@ -374,9 +374,10 @@ void expectSound(Shape const &shape, SurfaceCase const &surfaceCase,
     options.SetVtxBoundaryInterpolation(boundary);
     auto const refiner = CreateSurfaceRefiner(shape, surfaceCase, 0, options);
     FarExt::TopologyLevel const &base = refiner->GetLevel(refiner->GetMaxLevel());
+    FarExt::SurfaceFaces const faces(base.GetLevel());
     SurfaceSet<double> const surfaces(*refiner, shape.positions);
-    std::vector<bool> hasFace(std::size_t(base.GetNumFaces()));
-    for (int face = 0; face < base.GetNumFaces(); ++face) {
+    std::vector<bool> hasFace(std::size_t(faces.GetNumFaces()));
+    for (int face = 0; face < faces.GetNumFaces(); ++face) {
         hasFace[std::size_t(face)] = surfaces[face].IsValid();
     }
     bool hasVertexTwice = false; // in a face
@@ -417,10 +418,11 @@ void expectSound(Shape const &shape, SurfaceCase const &surfaceCase,
                 openPoints.insert({side.first, side.second});
             }
         }
-        for (int edge = 0; edge < base.GetNumEdges(); ++edge) {
+        for (int edge = 0; edge < faces.GetNumEdges(); ++edge) {
             int numFaces = 0;
-            for (int const face : base.GetEdgeFaces(edge)) {
-                numFaces += hasFace[std::size_t(face)];
+            for (int side = 0; side < 2; ++side) {
+                int const face = faces.GetSide(edge, side).face;
+                numFaces += face != Far::INDEX_INVALID && hasFace[std::size_t(face)] ? 1 : 0;
             }
             for (int i = 0; i < forest.GetPolyline(edge).GetNumPoints(); ++i) {
                 ASSERT_EQ(openPoints.count(forest.GetFirstEdgePoint(edge) + i), numFaces == 1);
@@ -428,7 +430,7 @@ void expectSound(Shape const &shape, SurfaceCase const &surfaceCase,
         }
 
         std::map<int, Vector3> shared;
-        for (int face = 0; face < base.GetNumFaces(); ++face) {
+        for (int face = 0; face < faces.GetNumFaces(); ++face) {
             if (!hasFace[std::size_t(face)]) {
                 continue;
             }

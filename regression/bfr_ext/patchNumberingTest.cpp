@@ -57,9 +57,11 @@ RandomPatchLevels makeLevels(FarExt::TopologyLevel const &base, unsigned seed, S
     for (int face = 0; size == Size::InSections && face < 2; ++face) {
         levels.faces[std::size_t(face)] = 7;
         // Edges as fine as the face, coarser and finer.
-        levels.edges[std::size_t(base.GetFaceEdges(face)[0])] = 7;
-        levels.edges[std::size_t(base.GetFaceEdges(face)[1])] = 5;
-        levels.edges[std::size_t(base.GetFaceEdges(face)[2])] = 9;
+        int const ofEdges[] = {7, 5, 9};
+        for (int local = 0; local < 3; ++local) {
+            int const edge = FarExt::SurfaceFaces(base.GetLevel()).GetEdge(face, local).edge;
+            levels.edges[std::size_t(edge)] = ofEdges[local];
+        }
     }
     return levels;
 }

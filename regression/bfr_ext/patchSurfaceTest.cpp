@@ -33,12 +33,13 @@ void forEachPlace(Far::PatchTable const &table, PatchMap const &map,
     for (int patch = 0; patch < table.GetNumPatchesTotal(); ++patch) {
         bool const isKite = table.GetPatchParam(PatchMap::GetHandle(patch)).NonQuadRoot();
         // Where kites meet in the centre of a face there is a limit, but not inside of a half.
-        int const size = surfaceLevel.GetFaceVertices(map.GetFace(patch)).size();
+        auto const [size, isHalf] =
+            FarExt::SurfaceFaces(surfaceLevel.GetLevel()).GetShape(map.GetFace(patch));
         double const center[2] = {size == 3 ? 1.0 / 3 : 0.5,
                                   size == 3 ? 1.0 / 3 : 0.5 / std::tan(double(EIGEN_PI) / size)};
         auto const &coords = map.GetCoords(patch);
-        bool const isAtCenter = !surfaceLevel.IsFaceHalf(map.GetFace(patch)) &&
-                                std::hypot(coords[4] - center[0], coords[5] - center[1]) < 1e-9;
+        bool const isAtCenter =
+            !isHalf && std::hypot(coords[4] - center[0], coords[5] - center[1]) < 1e-9;
         for (int i = 0; i < (isKite && !isAtCenter ? 1 : 4); i += isKite ? 2 : 1) {
             add(PatchMap::Place{patch, i == 1 || i == 2 ? 1.0 : 0.0, i >= 2 ? 1.0 : 0.0}, true);
         }

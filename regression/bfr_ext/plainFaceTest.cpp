@@ -168,11 +168,13 @@ struct Faces {
             }
             ++numPlain;
             FarExt::internal::CellPatch cell;
-            FarExt::internal::GatherBaseCell(level, face, {}, cell);
+            FarExt::SurfaceFaces const faces(level);
+            FarExt::internal::GatherBaseCell(faces, face, {}, cell);
             std::vector<Far::Index> expected = cell.patch.sources;
             EXPECT_EQ(plain->GetNumPoints(), int(expected.size())) << "face " << face;
             expected.resize(expected.size() + 2 * std::size_t(level.GetFaceSize(face)));
-            FindBaseCellTurns(level, face, expected.data() + cell.patch.sources.size());
+            FarExt::internal::FindBaseCellTurns(faces, face,
+                                                expected.data() + cell.patch.sources.size());
             EXPECT_EQ(points, expected) << "face " << face;
             CellType const &type = types.Find(std::move(cell), {});
             EXPECT_EQ(&plain->Get(), &type) << "face " << face;

@@ -42,15 +42,22 @@ public:
             _positions = Interpolate(match.GetMesh(0), _mesh, mask, _positions);
         }
         _pieces = MakeBasePieces(_mesh);
+        FarExt::SurfaceFaces const faces(refiner.GetLevel(level).GetLevel());
         for (BasePiece &piece : _pieces) {
             // The library may begin a face at another corner.
             std::vector<int> const &corners = match.GetLibraryCorners(level, piece.face);
-            piece.baseFace = match.GetLibraryFace(level, piece.face);
-            // A face that a crease crosses is two of the reference.
-            int const size = refiner.GetLevel(level).GetFaceVertices(piece.baseFace).size();
+            // A face that a crease crosses is two of the reference, as long as it is sharp.
+            int const half = std::max(match.GetLibraryHalf(level, piece.face), 0);
+            piece.baseFace = faces.GetFace({match.GetLibraryFace(level, piece.face), half});
+            int const size = faces.GetShape(piece.baseFace).size;
             ReferencePolygon const polygon = DivideBasePolygon(size, 0)[0];
-            for (std::size_t i = 0; i < piece.places.size(); ++i) {
-                piece.places[i] = polygon[std::size_t(corners[i])];
+            for (int local = 0; local < size; ++local) {
+                auto const corner = std::find(corners.begin(), corners.end(),
+                                              faces.GetPlace(piece.baseFace, local));
+                if (corner != corners.end()) {
+                    piece.places[std::size_t(corner - corners.begin())] =
+                        polygon[std::size_t(local)];
+                }
             }
         }
         setPlaces();

@@ -22,10 +22,11 @@ struct ThreadsScope {
 struct RandomPatchLevels {
     RandomPatchLevels(FarExt::TopologyLevel const &base, int numLevels, unsigned seed) {
         std::mt19937 random(seed);
-        for (int face = 0; face < base.GetNumFaces(); ++face) {
+        FarExt::SurfaceFaces const ofSurfaces(base.GetLevel());
+        for (int face = 0; face < ofSurfaces.GetNumFaces(); ++face) {
             faces.push_back(int(random() % unsigned(numLevels)));
         }
-        for (int edge = 0; edge < base.GetNumEdges(); ++edge) {
+        for (int edge = 0; edge < ofSurfaces.GetNumEdges(); ++edge) {
             edges.push_back(int(random() % unsigned(numLevels)));
         }
     }

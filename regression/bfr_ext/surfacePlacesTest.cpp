@@ -249,27 +249,20 @@ TEST_P(SurfacePlacesTest, FacesMeet) {
 
 // Where a place is in its patch, and how that changes.
 TEST(SurfacePlaces, InPatchesChangeAsTheirDerivativesSay) {
-    using BfrExt::internal::FaceCells;
     using BfrExt::internal::FindBfrPlace;
     using BfrExt::internal::FindPatchPlace;
     using BfrExt::internal::PatchPlace;
     constexpr double kStep = 1e-5;
-    using FarExt::internal::MakeFaceCells;
-    // The last ones have a sharp diagonal, or are half faces.
-    for (auto const &cells :
-         {MakeFaceCells(3), MakeFaceCells(4), MakeFaceCells(5), MakeFaceCells(6), MakeFaceCells(7),
-          MakeFaceCells(12), FaceCells{4, 2, false}, FaceCells{5, 3, false}, FaceCells{6, 2, false},
-          FaceCells{7, 3, false}, FaceCells{9, 2, false}, FaceCells{3, 0, true},
-          FaceCells{4, 0, true}, FaceCells{5, 0, true}, FaceCells{8, 0, true}}) {
-        int const size = cells.faceSize;
-        SCOPED_TRACE(testing::Message() << size << ", diagonal to " << cells.diagonalEnd);
+    for (FarExt::FaceShape const shape : std::initializer_list<FarExt::FaceShape>{
+             3, 4, 5, 6, 7, 12, {3, true}, {4, true}, {5, true}, {6, true}, {8, true}}) {
+        int const size = shape.size;
+        SCOPED_TRACE(testing::Message() << size << ", half " << shape.isHalf);
         for (int const level : {2, 3, 5}) {
             auto const find = [&](Uv const &uv) {
-                return FindPatchPlace(
-                    FindBfrPlace(BfrExt::Parameterization(size), {size, cells.isHalf}, uv, 0),
-                    cells, level, 2);
+                return FindPatchPlace(FindBfrPlace(BfrExt::Parameterization(size), shape, uv, 0),
+                                      shape, level, 2);
             };
-            std::vector<bool> isMet(std::size_t(BfrExt::internal::GetNumFacePatches(cells, level)));
+            std::vector<bool> isMet(std::size_t(BfrExt::internal::GetNumFacePatches(shape, level)));
             std::vector<Uv> places = findPlaces(size, 400);
             // Those near the centre, whose patches are of the whole cell.
             std::vector<Uv> const nearCenter = findPlaces(size, 40, 0.02);
@@ -363,10 +356,8 @@ TEST(SurfacePlaces, NearSharpFeaturesHaveALevelOfTheirOwn) {
         Surface<float> surface;
         ASSERT_TRUE(factory->InitVertexSurface(face, &surface));
         int const numPoints = surface.GetNumPatchPoints() - surface.GetNumControlPoints();
-        bool const isSharp =
-            numPoints == 20 * BfrExt::internal::GetNumFacePatches({4, 0, false}, 5);
-        ASSERT_TRUE(isSharp ||
-                    numPoints == 20 * BfrExt::internal::GetNumFacePatches({4, 0, false}, 2));
+        bool const isSharp = numPoints == 20 * BfrExt::internal::GetNumFacePatches(4, 5);
+        ASSERT_TRUE(isSharp || numPoints == 20 * BfrExt::internal::GetNumFacePatches(4, 2));
         numSharp += isSharp ? 1 : 0;
         // Faces with a sharp edge, and those around their neighbours.
         Far::ConstIndexArray const verts = refiner->GetLevel(0).GetFaceVertices(face);

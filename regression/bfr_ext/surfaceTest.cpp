@@ -65,8 +65,10 @@ std::vector<LevelCorner> getCorners(TopologyLevel const &level) {
         for (int half = 0; half < 1 + isSplit; ++half) {
             std::vector<double> uv(2 * std::size_t(verts.size()));
             EXPECT_TRUE(level.GetFaceSurfaceCoords(face, half, uv.data()));
-            for (int i = 0; i < (isSplit ? 4 : verts.size()); ++i) {
-                int const local = isSplit ? FarExt::kHexagonHalves[half][i] : i;
+            int const end = level.GetFaceDiagonalEnd(face);
+            int const count = isSplit ? FarExt::GetHalfSize(half, verts.size(), end) : verts.size();
+            for (int i = 0; i < count; ++i) {
+                int const local = isSplit ? FarExt::GetPlaceInHalves(half, i, end) : i;
                 result.push_back({level.GetFaceSurfaceFace(face, half),
                                   verts[local],
                                   sides.FindSide(level, face, local, half),
@@ -125,10 +127,10 @@ void expectLimits(Shape const &shape, SurfaceCase const &surfaceCase, Sdc::Optio
     SurfaceSet<double> const surfaces(*refiner, shape.positions, &cache);
     TopologyLevel const &base = refiner->GetLevel(refiner->GetMaxLevel() - level);
     bool const isFree = options.GetVtxBoundaryInterpolation() == Sdc::Options::VTX_BOUNDARY_NONE;
-    for (int face = 0; face < base.GetNumFaces(); ++face) {
-        ASSERT_EQ(surfaces[face].IsValid(),
-                  !base.IsFaceHole(face) && !(isFree && isAtFreeBoundary(base, face)))
-            << "face " << face;
+    FarExt::SurfaceFaces const faces(base.GetLevel());
+    for (int face = 0; face < faces.GetNumFaces(); ++face) {
+        bool const isAtFree = isFree && isAtFreeBoundary(base, faces.GetLevelFace(face).face);
+        ASSERT_EQ(surfaces[face].IsValid(), !faces.IsHole(face) && !isAtFree) << "face " << face;
     }
     for (LevelCorner const &corner : getCorners(refiner->GetLevel(refiner->GetMaxLevel()))) {
         if (surfaces[corner.face].IsValid()) {

@@ -61,7 +61,7 @@ private:
     void set(int face, CELLS &cells) {
         FarExt::internal::CellPatch cell;
         int const level = _refiner.GetHexSchemeOptions().GetSurfaceLevel();
-        GatherBaseCell(_refiner.GetHierarchy().mesh.levels[std::size_t(level)], face,
+        GatherBaseCell(FarExt::SurfaceFaces(_refiner.GetLevel(level).GetLevel()), face,
                        _refiner.GetSchemeOptions(), cell);
         std::vector<double> points;
         for (Far::Index const vert : cell.patch.sources) {

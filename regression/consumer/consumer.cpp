@@ -58,7 +58,7 @@ void expect(bool holds, char const *what) {
     numFailures += holds ? 0 : 1;
 }
 
-// What the program did before: it serves a table of either scheme.
+// Unchanged code of the program: it serves a table of either scheme.
 std::vector<float> evaluate(Far::StencilTable const &table) {
     int const numVertices = table.GetNumControlVertices();
     std::unique_ptr<Osd::CpuVertexBuffer> src(Osd::CpuVertexBuffer::Create(3, numVertices));

@@ -7,9 +7,9 @@
 set(called AllocateArray FreeArray PrepareArray RangeQueue ForEachRange Report InsertUnique SortUnique
   RefinementRules GetRules FaceRule TruncationMask FindQuadRow
   LimitRows CheckLimitLevel LimitOrigins LatticePatch LatticeFaces PlainFaces
-  RegularFaces MakeFaceParameterization FindInPlane FindFaceCoords FindCellPatchPoints FindCellsOfCell
+  RegularFaces MakeFaceParameterization FindInPlane FindFaceCoords FindCellPatchPoints
   GetStepsToLimit GatherBaseCell FindBaseCellTurns GatherBorder RefineCell
-  UseNextMasks ComesApart GatherFanItems FindCornerLimits PatchRefinement GetVertexMarks StepRowBack MakePlainBaseCell IndexMap MakeQuadFlag
+  UseNextMasks ComesApart GatherFanItems FindCornerLimits PatchRefinement GetVertexMarks StepRowBack MakePlainBaseCell IndexMap MakeQuadFlag QuadCorners
   Device MakeDeviceLimit MakeDeviceRefinements
   CheckChannel CheckStencilMode GetChannelInterpolation GetModeInterpolation
   CheckLevel CheckDescriptors)

@@ -59,7 +59,7 @@ class CudaTable : public DeviceEvaluator<Cuda> {};
 
 INSTANTIATE_TYPED_TEST_SUITE_P(Cuda, DeviceEvaluator, Cuda, KindName);
 
-// What a machine without a device says.
+// The message of a machine without a device.
 TEST(CudaWithoutDevice, IsUnsupported) {
     std::string const missing = Cuda::GetMissing();
     if (missing.empty()) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// What evaluators of all devices do, against RefinementEvaluator.  Each has a program of its own that
+// Tests of evaluators of all devices, against RefinementEvaluator.  Each has a program of its own that
 // instantiates these tests.
 #ifndef OPENSUBDIVHEX_REGRESSION_DEVICE_DEVICE_EVALUATOR_TEST_H
 #define OPENSUBDIVHEX_REGRESSION_DEVICE_DEVICE_EVALUATOR_TEST_H
@@ -30,7 +30,7 @@
 
 namespace OpenSubdivHex::Regression {
 
-/// Of values up to 1 in size.
+/// A rounding of values up to 1 in size.
 constexpr float kUnit = 0x1p-23f;
 constexpr float kBlank = 9;
 
@@ -350,10 +350,21 @@ TYPED_TEST_P(DeviceEvaluator, TakesEveryFirstStep) {
         FarExt::HexSchemeOptions schemeOptions;
         schemeOptions.faceMask = FarExt::FaceMask::Smooth;
         schemeOptions.firstStep = firstStep;
-        auto const refiner = MakeRefiner(GetShape("torus"), 3, Sdc::Options::VTX_BOUNDARY_EDGE_ONLY,
-                                         schemeOptions, true);
-        ASSERT_NO_FATAL_FAILURE(this->expectEqual(*refiner, {}, 3));
-        ASSERT_NO_FATAL_FAILURE(this->expectEqualLimit(*refiner, 3, 3));
+        std::vector<Shape> shapes{GetShape("torus")};
+        if (firstStep == FarExt::FirstStep::Truncate) {
+            // Lines pass vertices, in half polygons and in faces that they cross.
+            for (char const *name : {"creaseLoopQuads", "mixedSharpnessQuads"}) {
+                shapes.push_back(GetFeatureShape(name));
+            }
+            shapes.push_back(GetShape("mixedPatch"));
+        }
+        for (Shape const &shape : shapes) {
+            SCOPED_TRACE(testing::Message() << shape.name << ", first step " << int(firstStep));
+            auto const refiner =
+                MakeRefiner(shape, 3, Sdc::Options::VTX_BOUNDARY_EDGE_ONLY, schemeOptions, true);
+            ASSERT_NO_FATAL_FAILURE(this->expectEqual(*refiner, {}, 3));
+            ASSERT_NO_FATAL_FAILURE(this->expectEqualLimit(*refiner, 3, 3));
+        }
     }
 }
 
@@ -381,7 +392,7 @@ TYPED_TEST_P(DeviceEvaluator, TakesRunsOfEveryFaceSize) {
     }
 }
 
-// What an evaluator keeps of the limit in lattice faces.
+// The memory of an evaluator for the limit in lattice faces.
 TYPED_TEST_P(DeviceEvaluator, KeepsFewBytesOfLatticeFaces) {
     constexpr std::int64_t kMaxBytesOfWeights = 1 << 16; // which all faces have in common
     for (Shape const &shape : GetLatticeShapes()) {

@@ -80,7 +80,7 @@ TEST(LargeBuffers, AreWrittenBeyondTwoGigabytes) {
     expectSame();
 }
 
-// What does not fit is refused with its size, and nothing is written.
+// Too small a buffer is refused with its size, and nothing is written.
 TEST(SmallBuffers, AreRefusedByTheirSize) {
     auto const refiner =
         MakeRefiner(GetShape("cube"), 3, Sdc::Options::VTX_BOUNDARY_EDGE_ONLY, {}, true);
@@ -103,7 +103,7 @@ TEST(SmallBuffers, AreRefusedByTheirSize) {
     EXPECT_EQ(dst, std::vector<float>(dst.size(), kBlank));
 }
 
-// What the threads of CudaEvaluator sum up, one after the other.
+// The sums of CudaEvaluator's threads, one after the other.
 TEST(StencilLanes, SumUpStencils) {
     constexpr int kLength = 3;
     constexpr int kLanes = OsdExt::internal::kStencilLanes;

@@ -11,8 +11,8 @@ namespace OpenSubdivHex::Regression {
 
 /// \brief A processor as a device: the evaluator of devices with the kernels that C++ compiles.
 ///
-/// What may run in any order on a device, kernels that nothing waits between and the invocations of each,
-/// runs from the last to the first here: a missing Device::Wait() shows.
+/// Work that a device may run in any order (invocations of a kernel, and kernels without a wait between them) runs
+/// from the last to the first here: a missing Device::Wait() shows.
 class HostEvaluator : public OsdExt::DeviceRefinementEvaluator,
                       public OsdExt::BufferEvaluator<HostEvaluator, OsdExt::CpuBinding> {
 public:

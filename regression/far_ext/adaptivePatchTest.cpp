@@ -226,7 +226,7 @@ TEST(AdaptivePatches, KeepTheirTolerance) {
     }
 }
 
-// What is near the eye is refined more, by the same distances otherwise.
+// Patches near the eye are refined more, with equal distances otherwise.
 TEST(AdaptivePatches, AreFinerNearTheEye) {
     Shape const &shape = GetShape("cube");
     ReferenceValues const positions = GetPositions(shape);

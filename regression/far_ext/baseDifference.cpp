@@ -21,7 +21,7 @@ std::string getBytes(ARRAY const &array) {
     return {bytes, bytes + array.size() * sizeof(*array.data())};
 }
 
-/// Those of sharp vertices, one member after the other.
+/// Returns the bytes of sharp vertices, one member after the other.
 std::string getBytes(std::vector<SharpVertex> const &verts) {
     std::string result;
     auto const add = [&](auto const &value) {

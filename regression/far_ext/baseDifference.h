@@ -10,12 +10,12 @@
 
 namespace OpenSubdivHex::Regression {
 
-/// \brief What differs between the levels 0 of two refiners, in any relation, tag, mask or channel, bit
-/// by bit; empty if nothing does.
+/// \brief Describes a difference between the levels 0 of two refiners, in any relation, tag, mask or channel, bit
+/// by bit; empty if there is none.
 std::string FindBaseDifference(FarExt::TopologyRefiner const &a, FarExt::TopologyRefiner const &b);
 
-/// \brief What differs between level 0 and the base level of Far: the numbers of edges and of what
-/// faces are made of, and tags.
+/// \brief Describes a difference between level 0 and the base level of Far: the numbers of edges and of
+/// the components of faces, and tags.
 std::string FindFarDifference(FarExt::TopologyRefiner const &refiner,
                               Far::TopologyLevel const &farLevel);
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// What must hold of face-varying channels, orientation and tables whatever the rules are in detail.
+// Properties of face-varying channels, orientation and tables, whatever the rules are in detail.
 #include "properties.h"
 
 #include "far_ext/stencilTableFactory.h"

@@ -231,8 +231,8 @@ TEST(Coplanar, FlatShapesStayWatertight) {
 }
 
 TEST(Coplanar, FlatSidesStayFlat) {
-    // What lies in a side of a box at distance 2 and more from its edges does so in the middle of
-    // its faces: no face there is a hexagon, and all its points stay in the plane.
+    // Faces of a box's side at distance 2 and more from its edges lie in the middle of flat faces:
+    // none is a hexagon, and all their points stay in the plane.
     Shape const box = MakeBox(6, 6, 6);
     auto const refiner = createRefiner(box, ReferenceMask::Average, makeOptions(3, 0.1));
     std::vector<ReferenceValues> const levels = InterpolateLevels(*refiner, GetPositions(box));
@@ -378,7 +378,7 @@ TEST(Coplanar, RefinesAgain) {
     auto const uniform = CreateRefiner(box, ReferenceMask::Average, 2);
     ASSERT_NO_FATAL_FAILURE(expectSameFaces(*refiner, *uniform));
     ASSERT_NO_FATAL_FAILURE(ExpectValid(*refiner));
-    // Of the gaps of an open refinement nothing is left.
+    // The gaps of an open refinement are gone.
     ASSERT_TRUE(refiner->RefineCoplanar(box.positions.data(), makeOptions(2, 0.1, false)));
     ASSERT_TRUE(refiner->RefineUniform(uniformOptions));
     for (int v = 0; v < refiner->GetLevel(1).GetNumVertices(); ++v) {

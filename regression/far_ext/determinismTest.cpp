@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// The same bits for any number of threads.
+// Results have equal bits for any number of threads.
 #include "referenceMatch.h"
 
 #include "far_ext/executor.h"

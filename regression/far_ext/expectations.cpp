@@ -107,7 +107,7 @@ private:
         }
     }
 
-    /// Those of F-faces, spokes, and those of the edges.
+    /// Edges of F-faces, spokes, and edges of edges.
     void expectEdges() {
         int numEdges = _parent.GetNumFaceVertices();
         for (int f = 0; f < _parent.GetNumFaces(); ++f) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// What the tests expect of the values that a refiner computes.  Each of these functions fails the
+// Expectations of the values that a refiner computes.  Each of these functions fails the
 // running test with a fatal failure.
 #ifndef OPENSUBDIVHEX_REGRESSION_FAR_EXT_EXPECTATIONS_H
 #define OPENSUBDIVHEX_REGRESSION_FAR_EXT_EXPECTATIONS_H
@@ -13,7 +13,7 @@
 
 namespace OpenSubdivHex::Regression {
 
-/// What is the same up to the arithmetic of one row of weights.
+/// The difference that the arithmetic of one row of weights may make.
 template <typename REAL>
 inline constexpr double kRowTolerance = sizeof(REAL) == 8 ? 1e-12 : 2e-6;
 
@@ -46,11 +46,11 @@ void ExpectTable(FarExt::TopologyRefiner const &refiner, std::vector<ReferenceVa
 void ExpectVertexValuesEqual(FarExt::TopologyRefiner const &refiner, TaggedMatch const &match,
                              ReferenceMask mask, ReferenceValues const &base);
 
-/// The same for varying data.
+/// Compares varying data.
 void ExpectVaryingValuesEqual(FarExt::TopologyRefiner const &refiner, TaggedMatch const &match,
                               ReferenceValues const &base);
 
-/// The same for the face-varying channel that \p match is of.
+/// Compares the face-varying channel that \p match is of.
 void ExpectChannelValuesEqual(FarExt::TopologyRefiner const &refiner, TaggedMatch const &match,
                               ReferenceMask mask, ReferenceValues const &base, int channel);
 

@@ -10,7 +10,7 @@
 
 namespace OpenSubdivHex::Regression {
 
-/// Those of the last level of a refiner, to be found.
+/// Makes rows of the last level of a refiner, which are not found yet.
 inline FarExt::internal::LimitRows MakeLimitRows(FarExt::TopologyRefiner const &refiner) {
     auto const &level = refiner.GetHierarchy().mesh.levels[std::size_t(refiner.GetMaxLevel())];
     return {level, refiner.GetSchemeOptions(), refiner.GetHexSchemeOptions()};
@@ -24,7 +24,7 @@ public:
         EXPECT_TRUE(_rows.Find().IsOk());
     }
 
-    /// What is left of that of a vertex without \p row is nothing.
+    /// Expects that the row of a vertex is \p row.
     void Expect(Far::Index vert, FarExt::internal::SteppedRow const &row) const {
         Far::Index sources[FarExt::internal::PlainNeighborhoodGatherer::kNumRegular];
         FarExt::internal::SteppedRow left = FarExt::internal::StepRowBack(

@@ -98,7 +98,7 @@ Shape makeSharpTorus(TorusFaces kind) {
     return shape;
 }
 
-/// What comes of control values by way of the level is what comes of them straight.
+/// Expects equal limits of control values by way of the level and straight.
 void expectSameLimits(Shape const &shape, ReferenceMask mask, Sdc::Options const &options,
                       int maxLevel, bool hasFaceCenters = true) {
     auto const refiner = CreateRefiner(shape, mask, maxLevel, options);

@@ -318,8 +318,10 @@ TEST(Limit, NormalsAreThoseOfTheDeepMesh) {
                 bool const isCut = Sdc::Crease::IsInfinite(level.GetFaceDiagonalSharpness(face));
                 std::vector<int> corners;
                 if (isCut) {
-                    auto const &halfCorners = FarExt::kHexagonHalves[half];
-                    corners.assign(std::begin(halfCorners), std::end(halfCorners));
+                    int const end = level.GetFaceDiagonalEnd(face);
+                    for (int i = 0; i < FarExt::GetHalfSize(half, verts.size(), end); ++i) {
+                        corners.push_back(FarExt::GetPlaceInHalves(half, i, end));
+                    }
                 } else {
                     for (int i = 0; i < verts.size(); ++i) {
                         corners.push_back(i);
@@ -603,6 +605,40 @@ TEST(Limit, IsOfHexagonalStepsAlone) {
                                   fromSecond.points.topRows(numVertices)),
                   1e-12);
     }
+}
+
+// Lines pass vertices, in faces that they cross from any place to any other.
+TEST(Limit, BehindATruncationIsTheSameFromEveryLevel) {
+    FarExt::HexSchemeOptions schemeOptions;
+    schemeOptions.firstStep = FarExt::FirstStep::Truncate;
+    forEachShape(60, [&](Shape const &shape, Sdc::Options options) {
+        if (shape.creaseSharpness.empty() ||
+            options.GetVtxBoundaryInterpolation() == Sdc::Options::VTX_BOUNDARY_NONE ||
+            options.GetCreasingMethod() == Sdc::Options::CREASE_CHAIKIN) {
+            return; // Chaikin's sharpness is a float
+        }
+        ReferenceValues const positions = GetPositions(shape);
+        auto const refiner = CreateRefiner(shape, ReferenceMask::Smooth, 2, options, schemeOptions);
+        TopologyLevel const &level = refiner->GetLevel(1);
+        LimitValues const values = evaluateAll(*refiner, 1, positions);
+        LimitValues const cValues = evaluateAll(*refiner, 2, positions);
+        for (int vert = 0; vert < level.GetNumVertices(); ++vert) {
+            if (!isFree(*refiner, level, vert)) {
+                ASSERT_LT((values.points.row(vert) - cValues.points.row(vert)).norm(),
+                          1e-12 * GetSize(positions))
+                    << "vertex " << vert;
+            }
+        }
+        int const numSides = LimitSides(level).GetNumSides();
+        int const numChildSides = LimitSides(refiner->GetLevel(2)).GetNumSides();
+        for (int face = 0; face < level.GetNumFaces(); ++face) {
+            ASSERT_LT(
+                (values.points.row(numSides + face) - cValues.points.row(numChildSides + face))
+                    .norm(),
+                1e-12 * GetSize(positions))
+                << "face " << face;
+        }
+    });
 }
 
 } // namespace OpenSubdivHex::Regression::limitTest

@@ -25,7 +25,7 @@ using Factory = FarExt::LimitStencilTableFactoryReal<double>;
 using Boundary = Sdc::Options::VtxBoundaryInterpolation;
 using Vector = Eigen::Vector3d;
 
-/// What the header promises of the weights of derivatives.
+/// The header's bound of the weights of derivatives.
 constexpr double kMaxDerivativeWeight = 8;
 
 constexpr float kInfinite = 10;

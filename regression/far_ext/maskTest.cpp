@@ -179,7 +179,7 @@ void expectSameAround(FarExt::IrregularVertexMask const &mask,
     EXPECT_EQ(mask.vertex.faceWeight, expected.vertex.faceWeight);
 }
 
-/// Of the weights of F-vertices.
+/// Compares the weights of F-vertices.
 double findLargestDifference(FarExt::IrregularVertexMask const &a,
                              FarExt::IrregularVertexMask const &b) {
     double result = 0;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// What is left of a refiner whose memory does not suffice.
+// The state of a refiner whose memory does not suffice.
 #include "far_ext/topologyRefinerFactory.h"
 #include "regression/shapes/shapeDescriptor.h"
 #include "regression/shapes/shapes.h"

@@ -253,7 +253,7 @@ TEST(MeshFactory, ValuesAreChecked) {
                   "getBaseFaceFVarValues");
 }
 
-// What is called in another function than that which it is for would change what is complete, or find
+// A call in a function that it is not for would change complete data, or find
 // no room: it is refused.
 TEST(MeshFactory, CallsAreForTheirFunctions) {
     struct Call {

@@ -110,7 +110,7 @@ Shape cutOpen(Shape const &shape, FVarChannel const &channel) {
 
 } // namespace
 
-// What the patches of a channel are does not depend on what its mesh has beyond the seams.
+// Patches of a channel do not depend on the mesh beyond the seams.
 TEST(PatchChannel, IsThatOfTheMeshCutOpen) {
     for (Shape shape : GetManifoldShapes()) {
         if (shape.GetNumCorners() > kMaxCorners) {
@@ -338,7 +338,7 @@ TEST(PatchChannel, LinearPatchesHaveTheValuesOfTheLevel) {
     }
 }
 
-// What a program does that knows Far and Osd alone.
+// A program that knows Far and Osd alone.
 TEST(PatchChannel, ServesOpenSubdiv) {
     Shape const &shape = GetFeatureShape("cubeOfCharts");
     auto const refiner = CreateRefiner(shape, ReferenceMask::Smooth, 2,

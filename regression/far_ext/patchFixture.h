@@ -58,9 +58,7 @@ struct CellsOfFace {
     int GetLocal(int half, int corner) const {
         return end > 0 ? FarExt::GetPlaceInHalves(half, corner, end) : corner;
     }
-    bool HasKites(int half) const {
-        return GetNumCorners(half) != 4 || (end > 0 && 2 * end != size);
-    }
+    bool HasKites(int half) const { return GetNumCorners(half) != 4; }
     int GetHalfOfEdge(int local) const { return local < end ? 1 : 0; }
     /// The side of its cell that an edge is.
     int GetSide(int local) const {

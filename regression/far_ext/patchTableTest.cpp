@@ -7,6 +7,7 @@
 
 #include "far_ext/executor.h"
 #include "far_ext/stencilTableFactory.h"
+#include "far_ext/surfaceFaces.h"
 #include "regression/shapes/featureShapes.h"
 #include "regression/shapes/shapeDescriptor.h"
 
@@ -353,7 +354,7 @@ TEST(PatchTable, IsCloseToTheLimit) {
     }
 }
 
-// What a program does that knows Far and Osd alone.
+// A program that knows Far and Osd alone.
 TEST(PatchTable, ServesOpenSubdiv) {
     Shape const &shape = GetShape("cube");
     ReferenceValues const positions = GetPositions(shape);
@@ -491,9 +492,9 @@ TEST(PatchMap, FindsPlaces) {
                 return;
             }
             FarExt::PatchMap const map(refiner, depth);
-            TopologyLevel const &surface =
-                refiner.GetLevel(refiner.GetHexSchemeOptions().GetSurfaceLevel());
-            ASSERT_EQ(map.GetNumFaces(), surface.GetNumFaces());
+            FarExt::SurfaceFaces const faces(
+                refiner.GetLevel(refiner.GetHexSchemeOptions().GetSurfaceLevel()).GetLevel());
+            ASSERT_EQ(map.GetNumFaces(), faces.GetNumFaces());
             std::vector<double> areas(std::size_t(map.GetNumFaces()), 0);
             for (int patch = 0; patch < map.GetNumPatches(); ++patch) {
                 auto const &q = map.GetCoords(patch);
@@ -513,9 +514,9 @@ TEST(PatchMap, FindsPlaces) {
                 }
             }
             for (int face = 0; face < map.GetNumFaces(); ++face) {
-                int const size = surface.GetFaceVertices(face).size();
+                int const size = faces.GetShape(face).size;
                 double const area = size == 3 ? 0.5 : size / (4 * std::tan(EIGEN_PI / size));
-                EXPECT_NEAR(areas[std::size_t(face)], surface.IsFaceHole(face) ? 0 : area, 1e-12)
+                EXPECT_NEAR(areas[std::size_t(face)], faces.IsHole(face) ? 0 : area, 1e-12)
                     << shape.name << ", face " << face;
             }
             EXPECT_EQ(map.FindPlace(-1, 0, 0).patch, Far::INDEX_INVALID);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// That faces with the same neighbourhood have the same limits, and which faces make which vertices.
+// Faces with equal neighbourhoods have equal limits; which faces make which vertices.
 #include "far_ext/limit/plainFaces.h"
 #include "regression/far_ext/expectedRows.h"
 #include "regression/far_ext/referenceMatch.h"
@@ -92,7 +92,7 @@ TEST(PlainFaces, MakeAllWhereTypesAreShared) {
     EXPECT_LT(faces.GetOthers().size(), 0.1 * refiner->GetLevel(3).GetNumVertices());
 }
 
-// What a vertex is marked for, nobody else makes.
+// Vertices that are made otherwise are made by no face.
 TEST(PlainFaces, LeaveWhatIsMadeOtherwise) {
     auto const refiner =
         CreateRefiner(MakeTorus(9, 8, TorusFaces::Triangles), ReferenceMask::Average, 3);

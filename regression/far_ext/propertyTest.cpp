@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// What must hold at boundaries and creases whatever the rules are in detail: no reference.
+// Properties at boundaries and creases, whatever the rules are in detail: no reference.
 #include "properties.h"
 
 #include "regression/reference/largestValue.h"

@@ -38,7 +38,7 @@ Shape makeSharp(Shape shape) {
     return shape;
 }
 
-// What the library says of a face, where the reference has the base faces of its halves.
+// Compares the base faces of a face with the reference, which has the base faces of its halves.
 std::string findFaceError(Shape const &shape, TopologyLevel const &level,
                           FarExt::BaseFaceMap const &map, int face, int const (&regions)[2]) {
     std::ostringstream error;

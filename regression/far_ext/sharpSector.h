@@ -6,7 +6,7 @@
 
 namespace OpenSubdivHex::Regression {
 
-/// What lies around a vertex on infinitely sharp edges, on one of its sides.
+/// The faces around a vertex on infinitely sharp edges, on one of its sides.
 struct SharpSector {
     /// \p side is a number of \p sides.
     SharpSector(FarExt::TopologyLevel const &level, FarExt::LimitSides const &sides, int side) {

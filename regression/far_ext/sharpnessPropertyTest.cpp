@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// What must hold of sharpness that fades, and of wide sectors, whatever the rules are in detail.
+// Properties of sharpness that fades, and of wide sectors, whatever the rules are in detail.
 #include "properties.h"
 
 #include "regression/reference/largestValue.h"
@@ -197,7 +197,7 @@ std::vector<double> crossEigenvalues(ReferenceMask mask, int numFaces) {
 } // namespace
 
 TEST(Property, WideSectorsConvergeAsTheirBorder) {
-    // What ComputeSectorShrink claims: per step, the first mode across has 1/2, the next less, so that there
+    // The claim of ComputeSectorShrink: per step, the first mode across has 1/2, the next less, so that there
     // is a tangent plane.  With a quarter curvature would be bounded; with more it grows by four times that.
     std::map<int, double> const ofNumFaces = {
         {3, 0.418}, {4, 0.452}, {5, 0.469}, {6, 0.478}, {8, 0.487}};

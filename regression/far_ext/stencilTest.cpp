@@ -37,7 +37,7 @@ using Options = typename Factory<REAL>::Options;
 template <typename REAL>
 constexpr double kTolerance = sizeof(REAL) == 8 ? 1e-12 : 1e-6;
 
-/// What a table must hold: the values of its rows, and those that the rows' indices refer to.
+/// The content that a table must have: the values of its rows, and the values that the rows' indices refer to.
 struct ExpectedRows {
     struct Block {
         ReferenceValues values;  ///< one row per stencil

@@ -22,7 +22,7 @@ public:
     /// Matches the levels of \p refiner, all with full topology; \p channel is negative for the
     /// mesh itself.  Failures are reported by GetError().
     ///
-    /// Of a coplanar refinement the edges that make quads are read off the library's levels;
+    /// In a coplanar refinement the edges that make quads are read off the library's levels;
     /// \p closeGaps is its option.
     TaggedMatch(Shape const &shape, FarExt::TopologyRefiner const &refiner, int channel = -1,
                 bool closeGaps = true);
@@ -59,7 +59,7 @@ private:
         std::vector<int> corners;
     };
 
-    /// Of a place that is half a face.
+    /// The half, for a place that is half a face.
     static int GetHalf(Place const &place) { return place.corners[0] == 0 ? 0 : 1; }
 
     /// The library's V-faces, by their vertices from the F-vertex with the lowest index on; -1 for a

@@ -264,7 +264,7 @@ void expectParents(TopologyLevel const &parent, TopologyLevel const &child) {
     }
 }
 
-/// That an array lists, between the offsets, what a query gives for each component.
+/// Expects that an array lists, between the offsets, the result of a query for each component.
 template <typename QUERY>
 void expectList(IndexArray all, IndexArray offsets, int count, QUERY const &query) {
     ASSERT_EQ(offsets.size(), count + 1);
@@ -319,8 +319,8 @@ void expectSameFaces(TopologyLevel const &level, ReferenceMatch const &match, in
     }
 }
 
-// What fits is counted without larger sums: in constants, which such sums are refused in.  All edges are boundaries,
-// or nearly all B edges.
+// Counts that fit are found without larger sums: in constants, where such sums would be errors.  All edges are
+// boundaries, or nearly all are B edges.
 static_assert(FarExt::HexIndexing(0, 0, 1600000000)
                   .GetEdgeChildFirstCorner(130000000, 0, 130000000) == 2120000000);
 static_assert(FarExt::HexIndexing(0, 2000000000, 0).GetEdgeChildFace(1000000000, 900000000) ==
@@ -372,7 +372,7 @@ TEST_F(Topology, WholeRelations) {
     });
 }
 
-// Of many faces of one size in a row, with few and many of another before and behind.
+// Relations of many faces of one size in a row, with few and many of another before and behind.
 TEST_F(Topology, RelationsOfRuns) {
     Shape const triangles = MakeDual("triangles", MakeTruncated("", MakeIcosahedron()));
     Shape const hexagons = MakeTruncated("hexagons, pentagons", triangles);

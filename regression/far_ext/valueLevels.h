@@ -16,7 +16,7 @@ struct ValueRow {
     Eigen::Array<REAL, 1, Eigen::Dynamic> value;
 };
 
-/// What the library interpolates.
+/// The kinds of values that the library interpolates.
 enum class ValueKind { Vertex, Varying, FaceVarying };
 
 /// \brief Values of all levels of \p refiner from those of the base, computed by its

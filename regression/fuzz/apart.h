@@ -14,8 +14,8 @@ bool FailsApart(std::function<void()> const &run, unsigned numSeconds);
 
 } // namespace OpenSubdivHex::Regression
 
-/// \brief What a fuzz target may define beside LLVMFuzzerTestOneInput: prints the smallest input it
-/// finds that fails as \p data does.  The driver calls it.
+/// \brief Prints the smallest input it finds that fails as \p data does.  A fuzz target may define it beside
+/// LLVMFuzzerTestOneInput; the driver calls it.
 extern "C" void FuzzReport(unsigned char const *data, unsigned long size);
 
 #endif

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// What the fuzzer of the readers has to do with: files that are read, and files that are refused.
+// The input of the readers' fuzzer: files that are read, and files that are refused.
 #include "damagedFile.h"
 
 #include "tools/mesh/fileError.h"

@@ -32,7 +32,7 @@ using Clock = std::chrono::steady_clock;
 
 constexpr double kLongestCase = 120; ///< seconds
 
-/// What the process that runs cases tells the one that waits for it.
+/// Messages of the process that runs cases to the process that waits for it.
 struct Progress {
     std::atomic<std::uint64_t> seed{0};
     std::atomic<std::uint64_t> numCases{0};

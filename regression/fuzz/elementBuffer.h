@@ -11,7 +11,7 @@
 
 namespace OpenSubdivHex::Regression {
 
-/// What an evaluator reads or writes: elements with some offset and stride, in floats that have a value
+/// A buffer that an evaluator reads or writes: elements with some offset and stride, in floats that have a value
 /// of their own where nobody wrote.
 struct ElementBuffer {
     ElementBuffer(int numElements, int length, Dice &dice);

@@ -35,7 +35,7 @@ public:
 
     void Run(Dice &dice) {
         int const numStencils = _table.GetNumStencils();
-        // Those of OpenSubdiv write a range elsewhere: see StencilEvaluator.
+        // OpenSubdiv's evaluators write a range elsewhere: see StencilEvaluator.
         std::vector<Evaluator> const &osd = GetOsdEvaluators();
         evaluate(osd[dice.IsOneOf(64) ? osd.size() - 1 : 0], 0, numStencils);
         std::vector<ElementBuffer> bySimdLevel;

@@ -22,11 +22,11 @@ struct MeshSurfaces {
     /// Whether all that its neighbours share with a face is the same to the bit.  Around non-manifold
     /// vertices last bits may differ.
     bool IsJoined(int face) const;
-    /// Of the face.
+    /// The control points of the face.
     REAL const *GetControlPoints(int face) const { return controlPoints[std::size_t(face)].data(); }
     /// Three rows: the point at \p uv, du and dv.
     ReferenceValues Evaluate(int face, REAL const uv[2]) const;
-    /// What points are the same up to.
+    /// The difference by which equal points may differ.
     double GetTolerance() const;
 
     OracleCase const &oracleCase;

@@ -21,7 +21,7 @@ using FarExt::TopologyRefiner;
 
 namespace {
 
-/// What is the same up to some roundings, in double precision.
+/// The difference that some roundings make, in double precision.
 constexpr double kTolerance = 1e-12;
 
 /// Far prints what it finds about meshes unless it is told not to.

@@ -23,7 +23,7 @@ namespace OpenSubdivHex::Regression {
 /// Throws OracleFailure at the first difference.
 void CheckOracleCase(OracleCase const &oracleCase);
 
-/// What differs.
+/// A difference, with its place.
 class OracleFailure : public std::runtime_error {
 public:
     using std::runtime_error::runtime_error;
@@ -58,7 +58,7 @@ private:
 /// \brief A refined case, with the values of all its levels as PrimvarRefiner computes them in
 /// double precision.
 struct OracleLevels {
-    /// What is interpolated, with its control values and those of all levels.
+    /// Data that are interpolated, with control values and the values of all levels.
     struct Values {
         FarExt::StencilMode mode;
         int channel;

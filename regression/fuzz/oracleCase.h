@@ -27,10 +27,10 @@ struct OracleCase {
     bool closeGaps = true;       ///< of a coplanar refinement
     unsigned checks = 0;         ///< a number that all choices of checks follow from
 
-    /// \brief What values are the same up to, as a part of their size, where it is \p rounding but with
-    /// Chaikin's rule.
+    /// \brief Returns the difference by which equal values may differ, as a part of their size: \p rounding, but with
+    /// Chaikin's rule more.
     ///
-    /// That makes means of sharpness, floats whose last bits depend on the order of a sum.
+    /// Chaikin's rule makes means of sharpness, floats whose last bits depend on the order of a sum.
     double GetTolerance(double rounding) const;
 };
 

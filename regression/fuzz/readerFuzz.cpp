@@ -138,7 +138,7 @@ void requireRefused(Mesh const &mesh) {
     }
 }
 
-/// What an OBJ file, which knows no types, has of a property.
+/// Returns the value of a property in an OBJ file, which knows no types.
 float convertToObj(Tools::VertexProperty const &property, float value) {
     return Tools::IsInteger(property.type) ? value / float(Tools::GetMax(property.type)) : value;
 }

@@ -19,7 +19,7 @@ using Tools::PatchNumbering;
 
 namespace {
 
-/// What a stream makes, by the face and the coordinates of a place: numbers of the point, of derivatives
+/// The output of a stream, by the face and the coordinates of a place: numbers of the point, of derivatives
 /// and of values.
 template <typename REAL>
 using StreamedPlaces = std::map<std::array<REAL, 3>, std::vector<REAL>>;
@@ -55,9 +55,9 @@ public:
 
 private:
     bool hasAllSurfaces() const {
-        auto const &base = _mesh.factory->GetLevel();
-        for (int face = 0; face < base.GetNumFaces(); ++face) {
-            if (!_mesh.Has(face) && !base.IsFaceHole(face)) {
+        FarExt::SurfaceFaces const &faces = _mesh.factory->GetFaces();
+        for (int face = 0; face < faces.GetNumFaces(); ++face) {
+            if (!_mesh.Has(face) && !faces.IsHole(face)) {
                 return false;
             }
         }

@@ -41,11 +41,12 @@ bool initSurface(BfrExt::SurfaceFactory const &factory, int face,
 }
 
 /// A hole has no surface, and no face at a boundary of the paper's rule has one.
-bool isToHaveSurface(OracleLevels const &levels, TopologyLevel const &base, int face) {
-    auto const verts = base.GetFaceVertices(face);
-    return !base.IsFaceHole(face) && std::none_of(verts.begin(), verts.end(), [&](int vert) {
-        return IsOnFreeBoundary(levels.refiner, base, vert);
-    });
+bool isToHaveSurface(OracleLevels const &levels, BfrExt::SurfaceFactory const &factory, int face) {
+    TopologyLevel const &base = factory.GetLevel();
+    auto const verts = base.GetFaceVertices(factory.GetFaces().GetLevelFace(face).face);
+    return !factory.GetFaces().IsHole(face) &&
+           std::none_of(verts.begin(), verts.end(),
+                        [&](int vert) { return IsOnFreeBoundary(levels.refiner, base, vert); });
 }
 
 /// The limits of the vertices of the last level.
@@ -95,8 +96,10 @@ void checkLimitsOfVertices(MeshSurfaces<REAL> const &mesh, OracleLevels const &l
             }
             std::vector<REAL> coords(2 * std::size_t(verts.size()));
             level.GetFaceSurfaceCoords(face, half, coords.data());
-            for (int i = 0; i < (isSplit ? 4 : verts.size()); ++i) {
-                int const vert = verts[isSplit ? FarExt::kHexagonHalves[half][i] : i];
+            int const end = level.GetFaceDiagonalEnd(face);
+            int const count = isSplit ? FarExt::GetHalfSize(half, verts.size(), end) : verts.size();
+            for (int i = 0; i < count; ++i) {
+                int const vert = verts[isSplit ? FarExt::GetPlaceInHalves(half, i, end) : i];
                 REAL const *const uv = &coords[2 * std::size_t(i)];
                 Eigen::RowVectorXd const point = mesh.Evaluate(baseFace, uv).row(0);
                 if (!(GetDifference(point, limits.row(vert)) <= mesh.GetTolerance())) {
@@ -263,16 +266,16 @@ std::vector<REAL> checkTessellation(MeshSurfaces<REAL> const &mesh,
 }
 
 /// A tree of a few cells anywhere, or those of levels.
-CellTree makeTree(int faceSize, Dice &dice) {
+CellTree makeTree(FarExt::FaceShape shape, Dice &dice) {
     constexpr int kNumLevels = 4;
     if (dice.IsOneOf(2)) {
         std::vector<int> levels;
-        for (int edge = 0; edge < faceSize; ++edge) {
+        for (int edge = 0; edge < shape.size; ++edge) {
             levels.push_back(dice.Roll(kNumLevels));
         }
-        return CellTree(faceSize, levels.data(), dice.Roll(kNumLevels));
+        return CellTree(shape, levels.data(), dice.Roll(kNumLevels));
     }
-    CellTree tree(faceSize);
+    CellTree tree(shape);
     for (int i = dice.Roll(10); i > 0; --i) {
         tree.Refine(dice.Roll(tree.GetNumCells()));
     }
@@ -282,7 +285,7 @@ CellTree makeTree(int faceSize, Dice &dice) {
 template <typename REAL>
 void checkSurfaces(OracleLevels const &levels, OracleLevels::Values const &values, Dice &dice) {
     MeshSurfaces<REAL> const mesh(levels, values);
-    TopologyLevel const &base = mesh.factory->GetLevel();
+    FarExt::SurfaceFaces const &faces = mesh.factory->GetFaces();
     if (values.mode == FarExt::INTERPOLATE_VERTEX) {
         checkLimitsOfVertices(mesh, levels, dice);
     }
@@ -294,12 +297,12 @@ void checkSurfaces(OracleLevels const &levels, OracleLevels::Values const &value
     }
     CellForest forest(levels.refiner);
     bool const isUniform = dice.IsOneOf(4);
-    for (int face = 0; face < base.GetNumFaces(); ++face) {
-        int const size = base.GetFaceVertices(face).size();
-        forest.SetTree(face, isUniform ? CellTree(size, 2) : makeTree(size, dice));
+    for (int face = 0; face < forest.GetNumFaces(); ++face) {
+        FarExt::FaceShape const shape = faces.GetShape(face);
+        forest.SetTree(face, isUniform ? CellTree(shape, 2) : makeTree(shape, dice));
     }
     for (int i = dice.Roll(3); i > 0; --i) {
-        forest.SetEdge(dice.Roll(base.GetNumEdges()), Polyline(dice.Roll(7)));
+        forest.SetEdge(dice.Roll(faces.GetNumEdges()), Polyline(dice.Roll(7)));
     }
     forest.MatchEdges();
     CheckForest(mesh, forest, dice);
@@ -310,7 +313,7 @@ void checkSurfaces(OracleLevels const &levels, OracleLevels::Values const &value
     unsigned const seed = unsigned(dice.Roll(1 << 16));
     auto const rollLevel = [seed](int i) { return Dice(seed + 17 * unsigned(i)).Roll(4); };
     // So fine that it comes in sections where there is little memory.
-    int const fineFace = dice.IsOneOf(8) ? dice.Roll(base.GetNumFaces()) : -1;
+    int const fineFace = dice.IsOneOf(8) ? dice.Roll(faces.GetNumFaces()) : -1;
     auto const rollFaceLevel = [=](int face) { return face == fineFace ? 7 : rollLevel(face); };
     CheckStreams(mesh, PatchLevels(rollFaceLevel, rollLevel), dice);
     if constexpr (sizeof(REAL) == sizeof(double)) {
@@ -334,12 +337,12 @@ MeshSurfaces<REAL>::MeshSurfaces(OracleLevels const &levels,
     for (Eigen::Index i = 0; i < control.size(); ++i) {
         points.push_back(REAL(control(i / pointSize, i % pointSize)));
     }
-    surfaces.resize(std::size_t(base.GetNumFaces()));
+    surfaces.resize(std::size_t(factory->GetNumFaces()));
     controlPoints.resize(surfaces.size());
-    for (int face = 0; face < base.GetNumFaces(); ++face) {
+    for (int face = 0; face < factory->GetNumFaces(); ++face) {
         Surface<REAL> &surface = surfaces[std::size_t(face)];
         bool const isMade = initSurface(*factory, face, values, &surface, &status);
-        if (isMade != surface.IsValid() || isMade != isToHaveSurface(levels, base, face) ||
+        if (isMade != surface.IsValid() || isMade != isToHaveSurface(levels, *factory, face) ||
             isMade != factory->FaceHasLimitSurface(face)) {
             Fail("the surface of face ", face, " is ", isMade ? "made" : status.GetErrorMessage());
         }
@@ -355,7 +358,7 @@ bool MeshSurfaces<REAL>::IsJoined(int face) const {
         return false; // there may be seams
     }
     TopologyLevel const &base = factory->GetLevel();
-    for (int const vert : base.GetFaceVertices(face)) {
+    for (int const vert : base.GetFaceVertices(factory->GetFaces().GetLevelFace(face).face)) {
         for (int const beside : base.GetVertexFaces(vert)) {
             for (int const around : base.GetFaceVertices(beside)) {
                 if (base.IsVertexNonManifold(around)) {

@@ -125,12 +125,13 @@ void checkSelection(OracleLevels const &levels, OracleLevels::Values const &valu
                     isSplit  ? level.GetFaceFVarValues(f, values.channel, half)
                     : isFVar ? level.GetFaceFVarValues(f, values.channel)
                              : level.GetFaceVertices(f);
-                for (int i = 0; i < indices.size(); ++i) {
-                    auto const &corners = FarExt::kHexagonHalves[half];
-                    if (isSplit || !level.IsFaceBaseSplit(f) ||
-                        std::count(std::begin(corners), std::end(corners), i) > 0) {
-                        expected.push_back(indices[i]);
-                    }
+                bool const isWhole = isSplit || !level.IsFaceBaseSplit(f);
+                int const end = level.GetFaceDiagonalEnd(f);
+                int const count =
+                    isWhole ? indices.size() : FarExt::GetHalfSize(half, indices.size(), end);
+                for (int i = 0; i < count; ++i) {
+                    expected.push_back(
+                        indices[isWhole ? i : FarExt::GetPlaceInHalves(half, i, end)]);
                 }
             }
         }

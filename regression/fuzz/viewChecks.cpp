@@ -228,7 +228,7 @@ void checkFrames(MeshSurfaces<double> const &mesh, Dice &dice) {
         CellForest const *const previous = dice.IsOneOf(2) ? last.get() : nullptr;
         auto const kept = view.MakeForest<double>(bounds, points.data(), 3, previous);
         auto const found = view.MakeForest<double>(*mesh.factory, points.data(), 3, previous);
-        compareForests(kept, found, mesh.factory->GetLevel().GetNumEdges());
+        compareForests(kept, found, mesh.factory->GetFaces().GetNumEdges());
         if (bounds.GetMemory() > boundsOptions.GetMaxMemory()) {
             Fail("bounds take ", bounds.GetMemory(), " bytes of ", boundsOptions.GetMaxMemory());
         }

@@ -25,7 +25,7 @@ public:
     /// Empty, or why there is none.
     std::string const &GetError() const { return _error; }
 
-    /// What draws, in the words of its driver.
+    /// The renderer's name, by its driver.
     std::string GetRenderer() const;
 
     /// The floats of a buffer of OpenGL, once all that was called before is done.

@@ -28,7 +28,7 @@ namespace {
 using Descriptor = Osd::BufferDescriptor;
 using GlBuffer = std::unique_ptr<Osd::GLVertexBuffer>;
 
-/// What differs between the evaluators of OpenGL.
+/// Differences between the evaluators of OpenGL.
 struct Compute {
     using Evaluator = Osd::GLComputeEvaluator;
     using Table = Osd::GLStencilTableSSBO;
@@ -217,7 +217,7 @@ class GlTransformFeedback : public Gl<TransformFeedback> {};
 
 } // namespace
 
-// What the guide warns of: without a complete framebuffer there is an error of OpenGL, and no output, but
+// A warning of the guide: without a complete framebuffer there is an error of OpenGL, and no output, but
 // Osd's evaluator returns true.
 TEST_F(GlTransformFeedback, WritesNothingWithoutAFramebuffer) {
     auto const table = makeTable(true);
@@ -283,7 +283,7 @@ TEST_F(GlLarge, RangesEvaluateMoreStencilsThanADispatchHas) {
         Osd::GLComputeEvaluator::Create(desc, desc, Descriptor(), Descriptor()));
     ASSERT_TRUE(evaluator);
     std::vector<float> const before(expected.size(), 9);
-    // What the guide warns of: more groups than the driver takes are an error of OpenGL, and no output,
+    // A warning of the guide: more groups than the driver takes are an error of OpenGL, and no output,
     // but Osd's evaluator returns true.
     {
         bool const isTaken = (kNumStencils + 63) / 64 <= context.GetMaxComputeGroups();

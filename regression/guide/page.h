@@ -12,7 +12,7 @@
 #include <memory>
 #include <vector>
 
-/// \brief What the programs of the guide's pages stand on and do not show: base meshes, and checks.
+/// \brief Base meshes and checks that the programs of the guide's pages use and do not show.
 namespace Page {
 
 namespace Far = OpenSubdiv::Far;

@@ -91,11 +91,11 @@ Patch makePatch(Tiling tiling, int numRows, unsigned seed, bool isReversed) {
     return patch;
 }
 
-std::unique_ptr<TopologyRefiner> refine(Patch const &patch, FarExt::FaceMask mask) {
+std::unique_ptr<TopologyRefiner> refine(Patch const &patch, FarExt::HexSchemeOptions scheme) {
     Sdc::Options sdcOptions;
     sdcOptions.SetVtxBoundaryInterpolation(Sdc::Options::VTX_BOUNDARY_EDGE_ONLY);
     FarExt::TopologyRefinerFactory::Options options;
-    options.hexSchemeOptions.faceMask = mask;
+    options.hexSchemeOptions = scheme;
     ShapeDescriptor const descriptor(patch.shape);
     auto refiner = FarExt::TopologyRefinerFactory::Create(descriptor.Get(), sdcOptions, options);
     TopologyRefiner::UniformOptions uniform(kNumLevels);
@@ -105,15 +105,26 @@ std::unique_ptr<TopologyRefiner> refine(Patch const &patch, FarExt::FaceMask mas
 }
 
 /// The vertices of a level along the line.
-std::vector<int> walkLine(TopologyLevel const &level, Patch const &patch) {
+std::vector<int> walkLine(TopologyRefiner const &refiner, int depth, Patch const &patch) {
+    auto const find = [&](int vertex) {
+        for (int parent = 0; parent < depth; ++parent) {
+            vertex = refiner.GetLevel(parent).GetVertexChildVertex(vertex);
+        }
+        return vertex;
+    };
+    TopologyLevel const &level = refiner.GetLevel(depth);
+    // The ends stay, and so does a sharp vertex, behind any first step.
+    int const start = find(patch.line[0]);
+    int const middle = find(patch.line[2]);
+    int const end = find(patch.line[kLineEdges]);
     for (bool const isForward : {true, false}) {
-        std::vector<int> walk{patch.line[0]};
-        while (walk.back() != patch.line[kLineEdges]) {
+        std::vector<int> walk{start};
+        while (walk.back() != end) {
             auto const edges = level.GetVertexEdges(walk.back());
             auto const verts = level.GetEdgeVertices(edges[isForward ? 0 : edges.size() - 1]);
             walk.push_back(verts[0] == walk.back() ? verts[1] : verts[0]);
         }
-        if (std::count(walk.begin(), walk.end(), patch.line[1]) > 0) {
+        if (std::count(walk.begin(), walk.end(), middle) > 0) {
             return walk;
         }
     }
@@ -144,7 +155,7 @@ std::vector<float> refinePrimvar(Patch const &patch, TopologyRefiner const &refi
         } else {
             primvarRefiner.Interpolate(level, src, dst);
         }
-        for (int v : walkLine(refiner.GetLevel(level), patch)) {
+        for (int v : walkLine(refiner, level, patch)) {
             result.insert(result.end(), dst[std::size_t(v)].values,
                           dst[std::size_t(v)].values + kLength);
         }
@@ -153,7 +164,7 @@ std::vector<float> refinePrimvar(Patch const &patch, TopologyRefiner const &refi
     return result;
 }
 
-/// The same by RefinementEvaluator.
+/// Evaluates by RefinementEvaluator.
 std::vector<float> evaluate(Patch const &patch, TopologyRefiner const &refiner, bool isVarying) {
     OsdExt::RefinementEvaluator::Options options;
     options.interpolationMode =
@@ -164,7 +175,7 @@ std::vector<float> evaluate(Patch const &patch, TopologyRefiner const &refiner, 
     for (int level = 1; level <= kNumLevels; ++level) {
         std::vector<float> dst(std::size_t(evaluator->GetNumElements(level) * kLength));
         evaluator->Evaluate(patch.values.data(), packed, dst.data(), packed, level);
-        for (int v : walkLine(refiner.GetLevel(level), patch)) {
+        for (int v : walkLine(refiner, level, patch)) {
             float const *const value = dst.data() + std::size_t(v * kLength);
             result.insert(result.end(), value, value + kLength);
         }
@@ -184,7 +195,7 @@ std::vector<std::map<int, REAL>> findWeights(Patch const &patch, TopologyRefiner
     options.generateIntermediateLevels = false;
     auto const table = Factory::Create(refiner, options);
     std::vector<std::map<int, REAL>> result;
-    for (int v : walkLine(refiner.GetLevel(kNumLevels), patch)) {
+    for (int v : walkLine(refiner, kNumLevels, patch)) {
         auto const stencil = table->GetStencil(v);
         result.emplace_back();
         for (int i = 0; i < stencil.GetSize(); ++i) {
@@ -202,30 +213,47 @@ void expectSameBits(std::vector<float> const &actual, std::vector<float> const &
     EXPECT_EQ(std::memcmp(actual.data(), expected.data(), actual.size() * sizeof(float)), 0);
 }
 
+/// Compares patches of quads and of triangles, with two and three faces at the vertices of the line.
+void expectSameLine(FarExt::HexSchemeOptions scheme, std::size_t leastNumSegments) {
+    Patch const patch = makePatch(Tiling::Quads, 3, 0, false);
+    auto const refiner = refine(patch, scheme);
+    for (unsigned seed = 1; seed <= 6; ++seed) {
+        Tiling const tiling = seed % 3 == 0 ? Tiling::Triangles : Tiling::Quads;
+        Patch const other = makePatch(tiling, 1 + int(seed % 4), seed, seed % 2 != 0);
+        auto const otherRefiner = refine(other, scheme);
+        SCOPED_TRACE(testing::Message() << "seed " << seed);
+        bool const isPassed = scheme.firstStep == FarExt::FirstStep::Truncate;
+        ASSERT_EQ(otherRefiner->GetLevel(0).GetVertexChildVertex(other.line[1]) < 0, isPassed);
+        for (bool const isVarying : {false, true}) {
+            auto const primvars = refinePrimvar(patch, *refiner, isVarying);
+            ASSERT_GT(primvars.size(), kLength * leastNumSegments);
+            expectSameBits(refinePrimvar(other, *otherRefiner, isVarying), primvars);
+            auto const evaluated = evaluate(patch, *refiner, isVarying);
+            expectSameBits(evaluate(other, *otherRefiner, isVarying), evaluated);
+        }
+        EXPECT_EQ(findWeights<float>(other, *otherRefiner), findWeights<float>(patch, *refiner));
+        EXPECT_EQ(findWeights<double>(other, *otherRefiner), findWeights<double>(patch, *refiner));
+    }
+}
+
 } // namespace
 
 TEST(Border, PatchesHaveTheSameBitsOnTheLineTheyShare) {
     for (FarExt::FaceMask mask :
          {FarExt::FaceMask::Average, FarExt::FaceMask::Cosine, FarExt::FaceMask::Smooth}) {
-        Patch const patch = makePatch(Tiling::Quads, 3, 0, false);
-        auto const refiner = refine(patch, mask);
-        for (unsigned seed = 1; seed <= 6; ++seed) {
-            Tiling const tiling = seed % 3 == 0 ? Tiling::Triangles : Tiling::Quads;
-            Patch const other = makePatch(tiling, 1 + int(seed % 4), seed, seed % 2 != 0);
-            auto const otherRefiner = refine(other, mask);
-            SCOPED_TRACE(testing::Message() << "mask " << int(mask) << ", seed " << seed);
-            for (bool const isVarying : {false, true}) {
-                auto const primvars = refinePrimvar(patch, *refiner, isVarying);
-                ASSERT_GT(primvars.size(), 3U * 19 * kLineEdges);
-                expectSameBits(refinePrimvar(other, *otherRefiner, isVarying), primvars);
-                auto const evaluated = evaluate(patch, *refiner, isVarying);
-                expectSameBits(evaluate(other, *otherRefiner, isVarying), evaluated);
-            }
-            EXPECT_EQ(findWeights<float>(other, *otherRefiner),
-                      findWeights<float>(patch, *refiner));
-            EXPECT_EQ(findWeights<double>(other, *otherRefiner),
-                      findWeights<double>(patch, *refiner));
-        }
+        SCOPED_TRACE(testing::Message() << "mask " << int(mask));
+        expectSameLine({mask}, 19U * kLineEdges);
+    }
+}
+
+// Where a border passes a vertex, its line does not depend on the number of faces, from two on.
+TEST(Border, TruncatedPatchesHaveTheSameBitsOnTheLineTheyShare) {
+    FarExt::HexSchemeOptions scheme;
+    scheme.firstStep = FarExt::FirstStep::Truncate;
+    for (FarExt::FaceMask mask : {FarExt::FaceMask::Average, FarExt::FaceMask::Smooth}) {
+        SCOPED_TRACE(testing::Message() << "mask " << int(mask));
+        scheme.faceMask = mask;
+        expectSameLine(scheme, 19U * kLineEdges);
     }
 }
 

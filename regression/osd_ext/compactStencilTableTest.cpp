@@ -22,7 +22,7 @@ using OsdExt::CompactStencilTable;
 
 namespace {
 
-// What an evaluator asks of a buffer.
+// The functions of a buffer that an evaluator calls.
 struct Buffer {
     float *BindCpuBuffer() { return values.data(); }
     std::vector<float> values;
@@ -123,7 +123,7 @@ TEST(CompactStencilTable, HasTheSameResultsBitForBit) {
 }
 
 TEST(CompactStencilTable, SharesTheIndicesOfAFace) {
-    // Of a cube: six faces of four F-vertices with one list of four indices each, then eight
+    // The lists of a cube: six faces of four F-vertices with one list of four indices each, then eight
     // V-vertices, which come first in the table, of seven.
     Table const table = makeTable("cube", 1, false);
     auto const compact = CompactStencilTable::Create(*table);

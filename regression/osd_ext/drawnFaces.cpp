@@ -43,8 +43,10 @@ bool isCut(TopologyLevel const &level, DrawOptions const &options, int face) {
 void addPolygon(TopologyLevel const &level, DrawOptions const &options, int face, bool isHalf,
                 int half, PolygonIndices *polygons) {
     std::vector<int> corners;
-    for (int i = 0; i < (isHalf ? 4 : level.GetFaceVertices(face).size()); ++i) {
-        corners.push_back(isHalf ? FarExt::kHexagonHalves[half][i] : i);
+    int const size = level.GetFaceVertices(face).size();
+    int const end = level.GetFaceDiagonalEnd(face);
+    for (int i = 0; i < (isHalf ? FarExt::GetHalfSize(half, size, end) : size); ++i) {
+        corners.push_back(isHalf ? FarExt::GetPlaceInHalves(half, i, end) : i);
     }
     for (int i = 0; i < int(corners.size()); ++i) {
         int const corner = corners[std::size_t(i)];
@@ -203,7 +205,7 @@ std::string findTriangleError(PolygonIndices const &polygons,
             for (std::size_t j = 0; j < 3; ++j) {
                 std::size_t const to = 3 * triangle + j;
                 std::size_t place = 0;
-                // Of the same vertex in several corners the values decide.
+                // If a vertex is in several corners, the values decide.
                 auto const isSame = [&](std::size_t from) {
                     bool same = polygons.vertices[from] == triangles.vertices[to];
                     for (std::size_t c = 0; c < polygons.fvarValues.size(); ++c) {

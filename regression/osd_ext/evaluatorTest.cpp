@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// What StencilEvaluator promises, of every evaluator here.
+// Promises of StencilEvaluator, tested on every evaluator here.
 #include "evaluatorWorkspace.h"
 
 #include "osd_ext/cpuEvaluator.h"
@@ -85,7 +85,7 @@ TEST(Evaluator, FollowsOffsets) {
     }
 }
 
-/// The same bits as CpuEvaluator's of all stencils at once.
+/// Expects the bits of CpuEvaluator, which evaluates all stencils at once.
 void expectSameBits(TestTable const &table, EvaluatorFunctions const &functions, int numOutputs,
                     int stencilsPerCall, Layout const &layout, bool withOffsets) {
     int const numStencils = table.GetNumStencils();
@@ -257,7 +257,7 @@ TEST(Evaluator, RefusesWithoutWriting) {
             EXPECT_EQ(
                 functions.value(src, c.src, dst, c.dst, sizes, offsets, indices, w, c.start, c.end),
                 c.result);
-            // Of several outputs the last counts as well as the first.
+            // The last output counts as well as the first.
             EXPECT_EQ(functions.first(src, c.src, dst, c.src, dst, c.src, dst, c.dst, sizes,
                                       offsets, indices, w, w, w, c.start, c.end),
                       c.result);

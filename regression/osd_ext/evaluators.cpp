@@ -17,7 +17,7 @@ using OsdExt::SimdLevel;
 
 namespace {
 
-// Of Osd's evaluators.
+// The number of threads of Osd's evaluators.
 int getNumOsdThreads() {
 #ifdef _OPENMP
     return omp_get_max_threads();

@@ -46,11 +46,11 @@ struct Evaluator {
     int numThreads;
 };
 
-/// Those of this library: CpuEvaluator at every SIMD level that is there, ParallelEvaluator with 1 to 8
+/// The evaluators of this library: CpuEvaluator at every SIMD level that is there, ParallelEvaluator with 1 to 8
 /// threads.
 std::vector<Evaluator> const &GetOwnEvaluators();
 
-/// Those of OpenSubdiv.
+/// The evaluators of OpenSubdiv.
 std::vector<Evaluator> const &GetOsdEvaluators();
 
 /// \brief Sets the SIMD level and the number of threads while it lives.

@@ -33,7 +33,7 @@ namespace {
 /// Deep enough that topology, tables and evaluators work in parallel.
 constexpr int kLevel = 6;
 
-/// \brief What the threads of a host share, made by one of them.
+/// \brief Data that the threads of a host share, made by one of them.
 struct Scene {
     Scene() {
         shape = MakeIcosahedron();

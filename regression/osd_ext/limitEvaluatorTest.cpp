@@ -35,11 +35,11 @@ constexpr float kUntouched = -12345.678f;
 std::unique_ptr<TopologyRefiner>
 createRefiner(Shape const &shape, int level, bool isFull = true,
               Sdc::Options::VtxBoundaryInterpolation boundary = Sdc::Options::VTX_BOUNDARY_NONE,
-              FarExt::FaceMask faceMask = FarExt::FaceMask::Smooth) {
+              FarExt::HexSchemeOptions schemeOptions = {FarExt::FaceMask::Smooth}) {
     Sdc::Options sdcOptions;
     sdcOptions.SetVtxBoundaryInterpolation(boundary);
     FarExt::TopologyRefinerFactory::Options options;
-    options.hexSchemeOptions.faceMask = faceMask;
+    options.hexSchemeOptions = schemeOptions;
     auto refiner =
         FarExt::TopologyRefinerFactory::Create(ShapeDescriptor(shape).Get(), sdcOptions, options);
     TopologyRefiner::UniformOptions uniformOptions(level);
@@ -104,7 +104,8 @@ void expectLimits(TopologyRefiner const &refiner, int length, int gap = 2) {
     ASSERT_TRUE(evaluator);
     Osd::BufferDescriptor const srcDesc(0, length, length);
     std::vector<float> const base = makeValues(evaluator->GetNumElements(0) * length);
-    for (int level = 0; level <= evaluator->GetMaxLevel(); ++level) {
+    for (int level = refiner.GetHexSchemeOptions().GetSurfaceLevel();
+         level <= evaluator->GetMaxLevel(); ++level) {
         SCOPED_TRACE(testing::Message() << "level " << level << ", length " << length);
         Factory::Options options;
         options.level = level;
@@ -175,6 +176,19 @@ TEST(LimitEvaluator, IsThatOfLimitStencilTables) {
     }
 }
 
+TEST(LimitEvaluator, IsThatOfLimitStencilTablesBehindATruncation) {
+    FarExt::HexSchemeOptions schemeOptions{FarExt::FaceMask::Smooth};
+    schemeOptions.firstStep = FarExt::FirstStep::Truncate;
+    for (Shape const &shape : GetAllShapes()) {
+        if (shape.GetNumCorners() <= 40) {
+            SCOPED_TRACE(shape.name);
+            ASSERT_NO_FATAL_FAILURE(expectLimits(
+                *createRefiner(shape, 2, true, Sdc::Options::VTX_BOUNDARY_EDGE_ONLY, schemeOptions),
+                3));
+        }
+    }
+}
+
 TEST(LimitEvaluator, TakesAnyLengthAndSimdLevel) {
     auto const refiner = createRefiner(GetShape("dodecahedron"), 3);
     auto const saved = OsdExt::GetSimdLevel();
@@ -203,7 +217,7 @@ TEST(LimitEvaluator, TakesRegularFacesOfAnyMask) {
                  {Sdc::Options::VTX_BOUNDARY_NONE, Sdc::Options::VTX_BOUNDARY_EDGE_ONLY}) {
                 SCOPED_TRACE(testing::Message()
                              << name << ", mask " << int(faceMask) << ", boundary " << boundary);
-                auto const refiner = createRefiner(GetShape(name), 3, true, boundary, faceMask);
+                auto const refiner = createRefiner(GetShape(name), 3, true, boundary, {faceMask});
                 ASSERT_NO_FATAL_FAILURE(expectLimits(*refiner, 3, 0));
                 ASSERT_NO_FATAL_FAILURE(expectLimits(*refiner, 3));
                 ASSERT_NO_FATAL_FAILURE(expectLimits(*refiner, 5));
@@ -226,7 +240,7 @@ TEST(LimitEvaluator, TakesLatticeFacesOfAnyLengthAndSimdLevel) {
                 shape.cornerSharpness = {1.5f};
             }
             auto const refiner =
-                createRefiner(shape, 4, true, Sdc::Options::VTX_BOUNDARY_NONE, faceMask);
+                createRefiner(shape, 4, true, Sdc::Options::VTX_BOUNDARY_NONE, {faceMask});
             for (auto simdLevel : {OsdExt::SimdLevel::Portable, OsdExt::SimdLevel::Avx2,
                                    OsdExt::SimdLevel::Avx512}) {
                 if (simdLevel > OsdExt::GetMaxSimdLevel()) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// What limits of frames are made of, and how it lies in memory.
+// The weights of a frame's limits, and how they lie in memory.
 #include "osd_ext/refinement/limitRowWeights.h"
 #include "osd_ext/refinement/preparedLimit.h"
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// What Osd's own evaluators do where they differ from those here, right or wrong, so that a version
+// Where Osd's own evaluators differ from the evaluators here, right or wrong, so that a version
 // that does otherwise is noticed.
 #include "evaluatorWorkspace.h"
 

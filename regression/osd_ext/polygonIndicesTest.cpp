@@ -274,7 +274,7 @@ TEST(PolygonIndices, RefusesWhatDoesNotFit) {
     FarExt::LimitSides const sides(refiner->GetLevel(0));
     options.sides = &sides;
     expectRefused(options, "the sides are those of 8 vertices; the level has 32");
-    // Those of a level with as many vertices, whose edges are creases.
+    // Sides of a level with as many vertices, whose edges are creases.
     Shape creased = shape;
     for (int corner = 0; corner < shape.GetNumCorners(); ++corner) {
         int const v = shape.faceVertices[std::size_t(corner)];
@@ -294,7 +294,7 @@ TEST(PolygonIndices, RefusesWhatDoesNotFit) {
     EXPECT_EQ(CreatePolygonIndices(creasedRefiner->GetLevel(1), options, &status).GetNumPolygons(),
               0);
     EXPECT_EQ(status.GetCode(), FarExt::StatusCode::InvalidArgument);
-    // Those of another level that has the same.
+    // Another level has equal sides.
     auto const sameRefiner = refine(creased, 1);
     EXPECT_TRUE(creasedSides.IsOf(sameRefiner->GetLevel(1)));
     options.sides = &creasedSides;

@@ -36,7 +36,7 @@ constexpr Sdc::Options::FVarLinearInterpolation kLinearInterpolations[] = {
     Sdc::Options::FVAR_LINEAR_CORNERS_PLUS1, Sdc::Options::FVAR_LINEAR_CORNERS_PLUS2,
     Sdc::Options::FVAR_LINEAR_BOUNDARIES,    Sdc::Options::FVAR_LINEAR_ALL};
 
-/// Of values up to 1 in size: a few roundings per level.
+/// A few roundings per level, for values up to 1 in size.
 constexpr double kTolerance = 1e-6;
 constexpr float kGuard = -12345.678f;
 
@@ -355,6 +355,29 @@ TEST(RefinementEvaluator, EqualsTablesOfOtherSchemes) {
                 expectEqualsTable(*refiner, FarExt::INTERPOLATE_VARYING, 0, 1 + seed % 5));
         }
     }
+}
+
+// Lines pass vertices, in half polygons and in faces that they cross.
+TEST(RefinementEvaluator, EqualsTablesBehindATruncation) {
+    FarExt::HexSchemeOptions schemeOptions;
+    schemeOptions.firstStep = FarExt::FirstStep::Truncate;
+    int seed = 0;
+    forEachShape([&](Shape const &shape, Sdc::Options options) {
+        if (options.GetVtxBoundaryInterpolation() == Sdc::Options::VTX_BOUNDARY_NONE) {
+            return;
+        }
+        schemeOptions.faceMask = kMasks[seed % 3];
+        auto const refiner =
+            createRefiner(shape, schemeOptions, GetTestLevel(shape, 3, 2500), options);
+        ASSERT_NO_FATAL_FAILURE(
+            expectEqualsTable(*refiner, FarExt::INTERPOLATE_VERTEX, 0, 1 + seed++ % 5));
+        ASSERT_NO_FATAL_FAILURE(
+            expectEqualsTable(*refiner, FarExt::INTERPOLATE_VARYING, 0, 1 + seed % 5));
+        for (int channel = 0; channel < int(shape.fvarChannels.size()); ++channel) {
+            ASSERT_NO_FATAL_FAILURE(
+                expectEqualsTable(*refiner, FarExt::INTERPOLATE_FACE_VARYING, channel, 2));
+        }
+    });
 }
 
 TEST(RefinementEvaluator, EqualsTablesOfCoplanarRefinements) {

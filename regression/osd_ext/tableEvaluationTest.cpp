@@ -56,7 +56,7 @@ struct TableOfSizes : Far::StencilTable {
     }
 };
 
-/// What buffers are asked for.
+/// Records the sizes that buffers are created with.
 struct BufferOfSizes {
     static BufferOfSizes *Create(int numElements, int numVertices) {
         return new BufferOfSizes{numElements, numVertices};
@@ -250,7 +250,7 @@ TYPED_TEST(EvaluatorOfTables, RefusesDerivativesThatTheTableHasNot) {
     }
 }
 
-/// What Osd::Mesh wants of a vertex buffer, beside Osd::CpuVertexBuffer's.
+/// Adds the functions that Osd::Mesh needs to Osd::CpuVertexBuffer.
 struct MeshBuffer : Osd::CpuVertexBuffer {
     static MeshBuffer *Create(int numElements, int numVertices, void * /*context*/ = nullptr) {
         auto buffer = std::make_unique<MeshBuffer>(numElements, numVertices);

@@ -99,7 +99,7 @@ std::string formatNumbers(std::vector<double> const &values) {
     return result;
 }
 
-/// What borders do: along tubes of quads, and around border vertices of triangles.
+/// Curvature beside borders: along tubes of quads, and around border vertices of triangles.
 void addLines(Page *page) {
     constexpr int kNumAround = 12;
     constexpr int kNumRows = 8;

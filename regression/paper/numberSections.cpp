@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// What can be counted and computed: faces and vertices by level, matrices and eigenvalues.
+// Counts and numbers: faces and vertices by level, matrices and eigenvalues.
 #include "meshes.h"
 #include "plot.h"
 #include "schemes.h"
@@ -35,7 +35,7 @@ Counts count(PolygonMesh const &mesh) {
     return {mesh.GetNumVertices(), mesh.numEdges, mesh.GetNumFaces()};
 }
 
-/// What a step makes of a closed mesh.
+/// Returns the counts that a step makes of a closed mesh.
 Counts predict(SchemeType scheme, Counts parent) {
     auto const [v, e, f] = parent;
     switch (scheme) {
@@ -87,7 +87,7 @@ std::vector<PositionReal<REAL>> refinePositions(FarExt::TopologyRefiner const &r
     FarExt::PrimvarRefinerReal<REAL> const primvarRefiner(refiner);
     std::vector<PositionReal<REAL>> positions;
     for (int vertex = 0; vertex < shape.GetNumVertices(); ++vertex) {
-        // The same values in both precisions, so that only the arithmetic differs.
+        // Both precisions get equal values, so that only the arithmetic differs.
         Eigen::Map<Eigen::Vector3d const> const position(&shape.positions[3 * vertex]);
         positions.push_back({position.cast<float>().cast<REAL>()});
     }

@@ -108,7 +108,7 @@ TEST_F(Paper, PageIsComplete) {
         EXPECT_EQ(countAlone(page, word), 0) << word;
     }
 
-    // What cannot depend on the machine or on how much was computed.
+    // Results that depend neither on the machine nor on how much was computed.
     EXPECT_EQ(count(page, "class=\"off\""), 0);
     EXPECT_EQ(count(page, "class=\"ok\""), 6);
     EXPECT_EQ(count(page, "class=\"chip "), 15);

@@ -49,7 +49,7 @@ void AddSmoothnessSection(Page *page, Settings const &settings) {
     std::vector<std::pair<std::string, Shape>> const shapes{
         {"Honeycomb torus, all regular", GetShape("hexTorus")},
         {"Dodecahedron", MakeDodecahedron()}};
-    // Of each shape: which of Average and Cosine have smaller angles than Doo-Sabin's, and where.
+    // For each shape: where Average and Cosine have smaller angles than Doo-Sabin's.
     int numSmaller = 0, numSmallerLast = 0, numCompared = 0, numComparedLast = 0;
     std::string lastAngles;
     std::vector<std::string> parts;

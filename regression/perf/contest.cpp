@@ -93,7 +93,7 @@ std::vector<Cost> RunContest(benchmark::State &state, std::vector<Contestant> co
 
 void SetNumThreads(int numThreads) {
 #ifdef _OPENMP
-    // Of Osd's evaluators.
+    // For Osd's evaluators.
     omp_set_num_threads(numThreads);
 #endif
     FarExt::SetNumThreads(numThreads);

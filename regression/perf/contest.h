@@ -23,7 +23,7 @@ struct Contestant {
     double movedBytes = 0; ///< to be read and written at least; 0: what stays allocated
 };
 
-/// \brief What a contestant needed.
+/// \brief Time and memory of a contestant.
 struct Cost {
     std::string name;
     int numThreads = 1;

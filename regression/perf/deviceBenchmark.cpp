@@ -152,7 +152,7 @@ Contest makeLimits(BenchMesh const &mesh) {
     return contest;
 }
 
-/// What a host does before the first frame; \p make gives an object that is kept until release.
+/// The work of a host before the first frame; \p make gives an object that is kept until release.
 template <typename MAKE>
 Contestant makePreparation(std::string const &name, RefinerPointer const &refiner, MAKE make) {
     auto const made = std::make_shared<decltype(make())>();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// What is drawn of a level, and what says to which base face it belongs.
+// The drawing of a level, and the base faces of what is drawn.
 #include "makers.h"
 
 #include "far_ext/baseFaceMap.h"
@@ -30,7 +30,7 @@ Contestant makePolygons(std::shared_ptr<FarExt::TopologyRefiner const> const &re
     return contestant;
 }
 
-/// What users of Far write: index buffers filled face by face, with the base face of each.
+/// Code as users of Far write it: index buffers filled face by face, with the base face of each.
 Contestant makeFarPolygons(std::shared_ptr<Far::TopologyRefiner const> const &refiner) {
     auto const polygons = std::make_shared<OsdExt::PolygonIndices>();
     Contestant contestant;

@@ -66,8 +66,8 @@ Contestant MakeEvaluation(std::string const &name, int numThreads,
     return contestant;
 }
 
-/// \brief The same work, done with the threads of OpenMP, which are awake when it begins, and asleep
-/// before another contestant does: they keep their processors for milliseconds.
+/// \brief Runs the work with the threads of OpenMP.  They are awake when it begins, and asleep
+/// before another contestant begins: otherwise they keep their processors for milliseconds.
 Contestant OnOpenMp(Contestant contestant);
 
 /// Evaluates all levels of \p refiner without a table.  Results are compared if \p values says

@@ -6,7 +6,7 @@
 namespace OpenSubdivHex::Regression {
 namespace {
 
-/// The same work on each number of threads.
+/// One work on each number of threads.
 template <typename MAKE>
 Contest makeContest(MAKE make) {
     Contest contest;

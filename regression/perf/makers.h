@@ -29,7 +29,7 @@ std::unique_ptr<Far::TopologyRefiner> MakeFarBase(BenchMesh const &mesh);
 std::unique_ptr<FarExt::TopologyRefiner>
 MakeRefined(BenchMesh const &mesh, FarExt::FaceMask faceMask = FarExt::FaceMask::Average);
 std::unique_ptr<Far::TopologyRefiner> MakeFarRefined(BenchMesh const &mesh);
-/// The same with its full topology, for limits.
+/// MakeRefined() with full topology, for limits.
 std::unique_ptr<FarExt::TopologyRefiner> MakeFullyRefined(BenchMesh const &mesh);
 
 using Table = std::unique_ptr<Far::StencilTable const>;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// What the masks cost that FaceMask::Smooth has around irregular vertices and in quads: frames and tables
-// against those of FaceMask::Average, which has none.  Of the meshes those of hexagons alone have no
-// irregular vertices; of the others all are.
+// The cost of FaceMask::Smooth's masks around irregular vertices and in quads: frames and tables
+// against those of FaceMask::Average, which has no such masks.  Meshes of hexagons alone have no
+// irregular vertices; in the other meshes all vertices are irregular.
 #include "evaluation.h"
 
 namespace OpenSubdivHex::Regression {

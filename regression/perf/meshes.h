@@ -29,7 +29,7 @@ double CountHexVertices(Shape const &shape, int level);
 /// The vertices of a closed shape after \p level steps of Catmull-Clark.
 double CountCatmarkVertices(Shape const &shape, int level);
 
-/// The same for Doo-Sabin.
+/// Counts the vertices of Doo-Sabin.
 double CountDooSabinVertices(Shape const &shape, int level);
 
 } // namespace OpenSubdivHex::Regression

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// What pythonBenchmark.py has Python do, done by C++ alone: a library that it loads, so that both
+// The work of pythonBenchmark.py by C++ alone: a library that Python loads, so that both
 // take turns in one process.
 #include "far_ext/executor.h"
 #include "far_ext/stencilTableFactory.h"

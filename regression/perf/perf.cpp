@@ -97,7 +97,7 @@ void runDevice(Suite::Options options, std::string const &command, Paths const &
     GlContext const context;
     bool const hasGl = context.GetError().empty();
     Environment environment = describeRun(command);
-    // What is needed and missing fails the run, once all else is measured.
+    // If something needed is missing, the run fails once all else is measured.
     std::string failure;
     auto const describeMissing = [&](std::string const &reason, char const *needed) {
         if (std::getenv(needed)) {

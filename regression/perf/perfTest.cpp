@@ -138,7 +138,7 @@ TEST(Perf, QuickRunHasEveryFigure) {
     bool isCopyMeasured = false;
     for (Json const &cost : json["costs"]) {
         EXPECT_GT(cost["nanoseconds"], 0) << cost;
-        // What surfaces move is not counted.
+        // The bytes that surfaces move are not counted.
         if (cost["work"].get<std::string>().find("surfaces") == std::string::npos) {
             EXPECT_GT(cost["shareOfCopyBandwidth"], 0) << cost;
         }
@@ -153,7 +153,7 @@ TEST(Perf, QuickRunHasEveryFigure) {
 }
 
 #ifdef PERF_PYTHON
-/// What is Blender's is measured inside Blender alone.
+/// Rows of Blender are measured inside Blender alone.
 TEST(Perf, QuickRunOfPythonHasEveryFigure) {
     std::string const folder = testing::TempDir() + "perfTest";
     std::filesystem::create_directories(folder);

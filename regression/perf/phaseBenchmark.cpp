@@ -55,7 +55,7 @@ Contest makeBaseLevels(BenchMesh const &mesh) {
     return contest;
 }
 
-/// The same mesh with texture coordinates: two charts of half the faces each.
+/// Returns the mesh with texture coordinates: two charts of half the faces each.
 BenchMesh addCharts(BenchMesh const &mesh) {
     auto const shape = std::make_shared<Shape>(*mesh.shape);
     int const numVertices = shape->GetNumVertices();

@@ -22,8 +22,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// What is behind the first of \p separators in the first line that begins with \p begin,
-/// without spaces and quotes around.
+/// Returns the text behind the first of \p separators in the first line that begins with \p begin,
+/// without spaces and quotes around it.
 std::string readValue(char const *path, std::string const &begin, char const *separators) {
     std::ifstream file(path);
     std::string line;
@@ -43,7 +43,7 @@ std::string getHugePages() {
     return modes.substr(0, modes.find(']'));
 }
 
-/// Of the last minute; above 0 others were at work.
+/// The load of the last minute; above 0 other processes were at work.
 std::string getLoadAverage() {
     std::string load = "unknown";
     std::ifstream("/proc/loadavg") >> load;
@@ -145,7 +145,7 @@ void addName(std::vector<std::string> &names, std::string const &name) {
     }
 }
 
-/// What \p member says of the meshes of figures, each name once, in order.
+/// Returns the names that \p member gives the meshes of figures, each once, in order.
 std::vector<std::string> getNames(Results const &results, std::string BenchMesh::*member) {
     std::vector<std::string> names;
     for (Figure const &figure : results.figures) {

@@ -20,7 +20,7 @@ Environment DescribeEnvironment();
 /// was measured.
 std::string FormatMarkdown(Results const &results, Environment const &environment);
 
-/// The same as JSON.
+/// Formats results as JSON.
 std::string FormatJson(Results const &results, Environment const &environment);
 
 } // namespace OpenSubdivHex::Regression

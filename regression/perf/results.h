@@ -29,7 +29,7 @@ enum class Memory {
 };
 std::string GetName(Memory memory);
 
-/// \brief What is measured together.
+/// \brief The conditions that measurements share.
 struct Setting {
     std::string work; ///< of the contestants, as printed
     std::string item; ///< that their costs are per
@@ -58,12 +58,12 @@ struct Pairing {
     std::vector<std::size_t> peers; ///< the fastest of them counts
 };
 
-/// \brief What was measured, and the figures that follow from it.
+/// \brief Measurements, and the figures that follow from them.
 struct Results {
     std::string title;
     /// The rows that were to be measured.
     std::vector<Row> const *rows;
-    /// What is to be known of the sizes and the memory that the results name.
+    /// An explanation of the sizes and the memory that the results name.
     std::string conditions;
     std::vector<ContestResult> contests = {};
     std::vector<Figure> figures = {};

@@ -23,10 +23,10 @@ std::vector<Row> const &GetRows();
 /// Stands in the work of rows of frames for their mesh, which the suite puts in its place.
 constexpr char kFrameMesh[] = "{mesh}";
 
-/// Those of perf --device.
+/// The rows of perf --device.
 std::vector<Row> const &GetDeviceRows();
 
-/// Those of pythonBenchmark.py.
+/// The rows of pythonBenchmark.py.
 std::vector<Row> const &GetPythonRows();
 
 /// The row of that name, of all of these; throws std::out_of_range if there is none.

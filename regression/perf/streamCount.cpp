@@ -81,7 +81,7 @@ Count countStream(BfrExt::PatchStream<float> const &stream, std::vector<float> c
     return {points, facets, hash};
 }
 
-// What a process that was started for a share prints.
+// Reads the output of a process that was started for a share.
 Count parseCount(std::string const &line) {
     Count count;
     std::istringstream words(line);

@@ -43,7 +43,7 @@ public:
 
     /// One whose last level is a frame of a device.
     BenchMesh const &GetFrameMesh() const { return _frameMesh; }
-    /// The same a level further: all its levels together have more than 2^31 bytes at length 3.
+    /// The mesh one level further: all its levels together have more than 2^31 bytes at length 3.
     BenchMesh GetHugeMesh() const;
 
     /// Adds a benchmark whose contestants \p makeContest makes when it is run.
@@ -100,7 +100,7 @@ void AddViewBenchmarks(Suite &suite);
 void AddDrawingBenchmarks(Suite &suite);
 void AddGrowthBenchmarks(Suite &suite);
 void AddBusyBenchmarks(Suite &suite);
-/// Those of GetDeviceRows(), in a context of OpenGL that lives as long as the suite.
+/// Adds the benchmarks of GetDeviceRows(), in a context of OpenGL that lives as long as the suite.
 void AddDeviceBenchmarks(Suite &suite, GlContext const &context);
 /// The others of these, which need a device of CUDA: its name; empty where there is none, with \p reason.
 std::string GetCudaDevice(std::string &reason);

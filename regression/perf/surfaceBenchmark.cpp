@@ -32,7 +32,7 @@ constexpr int kRate = 8;
 using OwnSurface = BfrExt::Surface<float>;
 using PeerSurface = Bfr::Surface<float>;
 
-/// What surfaces are made of, and what they are evaluated from and to.
+/// The factory of surfaces, and the buffers that they are evaluated from and to.
 struct Workspace {
     explicit Workspace(BenchMesh const &mesh)
         : shape(mesh.shape), refiner(MakeBase(mesh)),
@@ -135,7 +135,7 @@ std::vector<float> makeCoords(PeerSurface const &surface, int numPlaces) {
     return coords;
 }
 
-/// The same with the stencils of one face, which all faces have where the mesh is regular.
+/// Evaluates with the stencils of one face, which all faces share where the mesh is regular.
 double evaluateStencils(PeerSurfaces const &peer, std::vector<float> const &stencils,
                         Workspace &workspace) {
     auto const numPoints = std::size_t(peer.surfaces[0].GetNumControlPoints());
@@ -150,7 +150,7 @@ double evaluateStencils(PeerSurfaces const &peer, std::vector<float> const &sten
     return double(peer.surfaces.size()) * double(stencils.size()) / double(numPoints);
 }
 
-/// Those of some places.
+/// Makes the stencils of some places.
 std::vector<float> makeStencils(PeerSurfaces const &peer, std::vector<float> const &coords) {
     PeerSurface const &surface = peer.surfaces[0];
     auto const numPoints = std::size_t(surface.GetNumControlPoints());
@@ -262,7 +262,7 @@ Contest makePointContest(BenchMesh const &mesh, bool isRegular) {
     return contest;
 }
 
-/// The same tessellation, of a rate, for both.
+/// Both evaluate one tessellation, by a rate.
 Contest makeRateContest(BenchMesh const &mesh, bool isRegular) {
     auto const workspace = std::make_shared<Workspace>(mesh);
     auto const own = std::make_shared<OwnSurfaces>();

@@ -83,10 +83,12 @@ ReferenceCuts FindCuts(TaggedMesh const &mesh, std::vector<TaggedMesh> const &va
                 int const before = ends[1] - ends[0];
                 isPassed = isPassed && 2 <= before && before <= 64 && 2 <= size - before &&
                            size - before <= 64;
-                // Halves of other sizes have nothing to keep apart.
-                bool const isHexagon = size == 6 && before == 3;
+                // What is apart must be so for ever.
                 for (int end : ends) {
-                    isPassed = isPassed && (isHexagon || !parts(corners[end]));
+                    bool const isForEver =
+                        edgeOf(mesh, corners[ends[0]]).sharpness >= kInfiniteSharpness &&
+                        edgeOf(mesh, corners[ends[1]]).sharpness >= kInfiniteSharpness;
+                    isPassed = isPassed && (isForEver || !parts(corners[end]));
                 }
                 for (TaggedMesh const &valueMesh : values) {
                     bool const isSeam[] = {edgeOf(valueMesh, corners[ends[0]]).sides.size() == 1,

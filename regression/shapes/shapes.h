@@ -63,7 +63,7 @@ Shape MakeBipyramid(int n);
 /// there.
 std::vector<Shape> const &GetShapes();
 
-/// Those of GetShapes() that are manifold, in the same order.
+/// The manifold shapes of GetShapes(), in the same order.
 std::vector<Shape> const &GetManifoldShapes();
 
 /// The shape of that name; throws std::out_of_range if there is none.

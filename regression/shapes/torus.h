@@ -6,7 +6,7 @@
 
 namespace OpenSubdivHex::Regression {
 
-/// What the faces of a torus are.
+/// The faces of a torus.
 enum class TorusFaces {
     Quads,
     Triangles,         ///< quads that are cut in two

@@ -231,7 +231,7 @@ TEST(Executor, TbbUsesAsManyThreadsAsWereChosen) {
 }
 #endif
 
-// Of the innermost scope of the thread, then of SetExecutor(), else the default one.
+// The executor is that of the thread's innermost scope, then that of SetExecutor(), else the default one.
 TEST(Executor, IsChosenForAllOrForAThread) {
     Executor &standard = FarExt::GetDefaultExecutor();
     int const numDefault = FarExt::GetNumThreads();
@@ -429,7 +429,7 @@ TEST(Executor, CarriesExceptionsOut) {
         FarExt::ParallelFor(100, [&](int) { ++numCalls; });
         EXPECT_EQ(numCalls, 100);
     }
-    // What an executor itself throws reaches the caller, too.
+    // Exceptions of an executor itself reach the caller, too.
     NoMemory noMemory;
     ExecutorScope const scope(&noMemory);
     EXPECT_THROW(FarExt::ParallelFor(2, [](int) {}), std::bad_alloc);

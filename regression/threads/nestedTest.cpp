@@ -173,7 +173,7 @@ TEST(Nested, SurfacesAreEvaluatedInsideOfSurfaces) {
 
 namespace {
 
-/// What makes loops of several threads.
+/// Calls that make loops of several threads.
 class LargeCalls {
 public:
     explicit LargeCalls(Shape const &shape)

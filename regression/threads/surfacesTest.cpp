@@ -67,7 +67,7 @@ void addPoints(Surface<double> const &surface, LevelTessellation const &tessella
     all->insert(all->end(), points.begin(), points.end());
 }
 
-/// Those of the surfaces of all faces and kinds of data, each made twice: then it is kept.
+/// Evaluates the surfaces of all faces and kinds of data, each made twice: then it is kept.
 std::vector<double> evaluateAll(SurfaceFactory const &factory, Shape const &shape) {
     // For values of a channel, too, whatever they stand for.
     std::vector<double> positions = shape.positions;
@@ -165,7 +165,7 @@ TEST(SharedSurfaces, OfOneSmallCache) {
 TEST(SharedSurfaces, OfOneTessellation) {
     Shape const &shape = GetFeatureShape("dartsQuads");
     auto const refiner = createRefiner(shape);
-    // What a tessellation is evaluated with is found for the first surface.
+    // The first surface finds the plan of a tessellation.
     auto const makeTessellations = [] {
         int const levels[] = {4, 1, 5, 2, 3};
         std::vector<LevelTessellation> made;

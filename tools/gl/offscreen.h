@@ -18,7 +18,7 @@ public:
     Offscreen(Offscreen const &) = delete;
     Offscreen &operator=(Offscreen const &) = delete;
 
-    /// What was drawn.
+    /// Returns the picture that was drawn.
     Image Read() const;
 
 private:

@@ -22,7 +22,7 @@ struct OrbitCamera {
     /// From space to that of the eye, and from there on.
     glm::mat4 GetView() const;
     glm::mat4 GetLens(float aspect) const; ///< \copydoc GetView()
-    /// The same camera, for a picture of that many pixels.
+    /// Returns this camera for a picture of \p width x \p height pixels.
     BfrExt::Camera ForPicture(int width, int height) const;
 
     glm::vec3 center{0};

@@ -159,11 +159,10 @@ void AdaptiveRefinement::Refine(AdaptiveArguments const &arguments,
         throw FileError(input, "--adaptive: " + status.GetErrorMessage());
     }
     FarExt::TopologyLevel const base = factory->GetLevel();
-    int const numFaces = base.GetNumFaces();
     BfrExt::Surface<float> surface;
     std::int64_t numSurfaces = 0;
-    for (int face = 0; face < numFaces; ++face) {
-        if (base.IsFaceHole(face)) {
+    for (int face = 0; face < factory->GetNumFaces(); ++face) {
+        if (factory->GetFaces().IsHole(face)) {
             continue;
         }
         if (!factory->InitVertexSurface(face, &surface, &status)) {

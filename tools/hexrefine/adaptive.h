@@ -16,7 +16,7 @@ class App;
 
 namespace OpenSubdivHex::Tools {
 
-/// What the command line says of --adaptive.
+/// Arguments of --adaptive.
 struct AdaptiveArguments {
     bool isAdaptive = false;
     std::vector<float> camera; ///< eye and target; empty: all of the mesh is seen
@@ -33,7 +33,7 @@ void AddAdaptiveOptions(CLI::App &app, AdaptiveArguments *arguments);
 /// Throws CLI::ValidationError for options that are not for --adaptive.
 void CheckAdaptiveOptions(CLI::App const &app, AdaptiveArguments const &arguments);
 
-/// \brief What became of the cells of a mesh.
+/// \brief Counts of the cells of a mesh.
 struct AdaptiveStatistics {
     static constexpr int kMaxReadSize = 65535; ///< sides of the largest face that can be refined
 

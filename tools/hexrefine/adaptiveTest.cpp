@@ -117,7 +117,7 @@ TEST_F(HexrefineAdaptive, WarnsOfFacesThatCannotBeReadAgain) {
     EXPECT_EQ(run(arguments + "1").error, "");
 }
 
-// What is near is fine; what is outside of the picture can be left as it is.
+// Near cells are fine; cells outside the picture may stay coarse.
 TEST_F(HexrefineAdaptive, CameraDecidesWhatIsFine) {
     std::string const cube = makeCubeFile();
     std::string const camera =

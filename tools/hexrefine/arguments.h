@@ -19,7 +19,7 @@ namespace OpenSubdivHex::Tools {
 inline constexpr char kLikePaper[] = "paper";
 inline constexpr char kLikeRenderer[] = "renderer";
 
-/// What the command line says, checked.
+/// The arguments of the command line, checked.
 struct Arguments {
     std::string input;
     int level = 1;

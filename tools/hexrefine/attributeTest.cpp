@@ -276,7 +276,7 @@ TEST_F(HexrefineAttribute, LimitLeavesNumbersAsTheyAre) {
             EXPECT_NEAR(sum, 1, 1e-5);
         }
     }
-    // Those that are there make room, and are 1 long without --limit.
+    // Normals of the file make room for those of the limit, and are 1 long without --limit.
     Mesh cube = MakeCube();
     for (char const *name : {"nz", "nx", "ny"}) {
         cube.vertexProperties.push_back({name, NumberType::Float, {3, 1, 2, -1, 1, -2, 3, 5}});
@@ -392,7 +392,7 @@ TEST_F(HexrefineAttribute, OnlyBordersOfMaterialsAreCut) {
         }
         EXPECT_NEAR(areas[0], areas[1], 1e-6);
     }
-    // What says the same everywhere cuts nothing.
+    // A label that all faces share cuts nothing.
     std::string const one = makeFile(
         "one.obj", vertices + "o x\nusemtl a\nf 1 2 5 4\nf 4 5 8 7\nf 2 3 6 5\nf 5 6 9 8\n");
     mesh = refine(one + " -l 1 --boundary edge-and-corner", "out.obj");

@@ -20,7 +20,7 @@ constexpr int kMinNumCells = 1 << 15;
 
 } // namespace
 
-/// What becomes of a base face.
+/// The facets of a base face.
 struct CellPieces::Patch {
     explicit Patch(LevelTessellation cells)
         : tessellation(std::move(cells)), facets(std::size_t(tessellation.GetNumFacetVertices())),
@@ -57,17 +57,17 @@ CellPieces::CellPieces(BfrExt::SurfaceFactory const &factory, BfrExt::CellForest
     numberFront();
 }
 
-// Those that some face has, in the order of the forest.
+// Numbers the points that some face has, in the order of the forest.
 void CellPieces::numberFront() {
     _frontVerts.assign(std::size_t(_forest.GetNumBoundaryPoints()), -1);
     for (int face = 0; face < _forest.GetNumFaces(); ++face) {
         if (!hasFace(face)) {
             continue;
         }
-        for (int const vert : _level.GetFaceVertices(face)) {
-            _frontVerts[std::size_t(vert)] = 0;
-        }
-        for (int const edge : _level.GetFaceEdges(face)) {
+        FarExt::SurfaceFaces const &faces = _factory.GetFaces();
+        for (int local = 0; local < faces.GetShape(face).size; ++local) {
+            _frontVerts[std::size_t(faces.GetVertex(face, local))] = 0;
+            int const edge = faces.GetEdge(face, local).edge;
             std::fill_n(_frontVerts.begin() + _forest.GetFirstEdgePoint(edge),
                         _forest.GetPolyline(edge).GetNumPoints(), 0);
         }
@@ -110,7 +110,7 @@ int CellPieces::takeFaces() {
             continue;
         }
         if (!_mesh.faceLabels.empty()) {
-            int const own = _mesh.faceLabels[std::size_t(_level.GetFaceBaseFace(end))];
+            int const own = _mesh.faceLabels[std::size_t(_factory.GetFaceBaseFace(end))];
             if (label >= 0 && own != label) {
                 break;
             }
@@ -203,7 +203,7 @@ void CellPieces::add(Patch const &patch) {
     }
     _piece.faceSizes.insert(_piece.faceSizes.end(), patch.sizes.begin(), patch.sizes.end());
     _piece.baseFaces.insert(_piece.baseFaces.end(), patch.sizes.size(),
-                            _level.GetFaceBaseFace(patch.face));
+                            _factory.GetFaceBaseFace(patch.face));
     _faceLevels.insert(_faceLevels.end(), patch.levels.begin(), patch.levels.end());
     for (int const place : patch.facets) {
         _piece.faceVertices.push_back(verts[std::size_t(place)]);

@@ -55,7 +55,7 @@ private:
         int numValues = 0; // of the whole mesh
     };
 
-    bool hasFace(int face) const { return !_level.IsFaceHole(face); }
+    bool hasFace(int face) const { return !_factory.GetFaces().IsHole(face); }
     void numberFront();
     int takeFaces();
     void evaluate(int face, Patch &patch) const;

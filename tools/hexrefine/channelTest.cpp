@@ -186,7 +186,7 @@ TEST_F(HexrefineChannel, NormalsAreOneLong) {
         directions.insert(int(std::lround(normal[0] + 2 * normal[1] + 3 * normal[2])));
     }
     EXPECT_EQ(directions, (std::set<int>{-3, -2, -1, 1, 2, 3}));
-    // What is not refined stays as it is.
+    // At level 0 values stay as they are.
     EXPECT_EQ(refine(input + " -l 0").channels[1].values, ReadMesh(input).channels[1].values);
 }
 
@@ -201,8 +201,8 @@ TEST_F(HexrefineChannel, LevelZeroCopies) {
 
 TEST_F(HexrefineChannel, HolesAreLeftOut) {
     Mesh const mesh = refine(makeCross("t hole 2/0/0 0 1\n") + " -l 1");
-    // Of 6 F-faces 4 are left.  Of 5 hexagons one lies in holes, 3 are halves beside them and one is
-    // whole; of 7 split ones 3 are halves beside them.
+    // 4 of 6 F-faces are left.  One of 5 hexagons lies in holes, 3 are halves beside holes, and one is
+    // whole; 3 of 7 split hexagons are halves beside holes.
     EXPECT_EQ(std::count(mesh.faceSizes.begin(), mesh.faceSizes.end(), 4), 4 + 3 + 3 + 2 * 4);
     EXPECT_EQ(std::count(mesh.faceSizes.begin(), mesh.faceSizes.end(), 6), 1);
     EXPECT_EQ(mesh.channels.at(0).faceValues.size(), mesh.faceVertices.size());

@@ -19,7 +19,7 @@ namespace {
 namespace Far = OpenSubdiv::Far;
 namespace Osd = OpenSubdiv::Osd;
 
-/// What the primvar refiner adds up.
+/// Numbers that the primvar refiner adds up.
 template <int WIDTH>
 struct Value {
     float numbers[WIDTH];

@@ -66,7 +66,7 @@ bool EvaluateLimit(OpenSubdiv::Far::LimitStencilTable const &table, FarExt::Limi
                    std::string const &evaluator, std::vector<float> *positions,
                    std::vector<float> *normals);
 
-/// \brief The same of a level whose vertices have one side each, without a table.
+/// \brief Evaluates limits without a table, for a level whose vertices have one side each.
 /// \param evaluator  refinement or primvar
 /// \return           false with a status, as from RefinementEvaluator or PrimvarRefiner
 bool EvaluateLimit(FarExt::TopologyRefiner const &refiner, std::string const &evaluator,

@@ -61,7 +61,7 @@ TEST_F(Hexrefine, IsLikeRenderers) {
     EXPECT_EQ(getRules(triangles), "average none none all");
     EXPECT_EQ(getRules(triangles + " --like renderer"),
               "smooth edge-and-corner truncate boundaries");
-    // What is said, and what the file says, come before it.
+    // Options, and the rules in the file, take precedence over --like.
     EXPECT_EQ(getRules(triangles + " --like renderer --mask cosine --first-step none --boundary "
                                    "edge-only --fvar-interpolation corners-only"),
               "cosine edge-only none corners-only");

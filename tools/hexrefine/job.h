@@ -17,7 +17,7 @@
 
 namespace OpenSubdivHex::Tools {
 
-/// \brief What hexrefine does for its arguments, from one mesh file to another: steps, which are called once
+/// \brief A run of hexrefine, from one mesh file to another: steps, which are called once
 /// each, in this order.
 ///
 /// Each throws FileError.  Warnings go to the standard error stream.
@@ -40,11 +40,11 @@ public:
     /// Writes the mesh, where it is asked for.
     void Write();
 
-    /// What the steps so far did.
+    /// Statistics of the steps so far.
     Statistics const &GetStatistics() const { return _statistics; }
-    /// What --tags prints, from Validate() on; empty where it is not asked for.
+    /// The text of --tags, from Validate() on; empty without --tags.
     std::string const &GetTagText() const { return _tagText; }
-    /// What is likely wrong with the mesh, or the arguments for it, from Validate() on.
+    /// Likely faults of the mesh, or of the arguments for it, from Validate() on.
     std::vector<std::string> const &GetHints() const { return _hints; }
 
 private:

@@ -81,7 +81,7 @@ void SortFacesByLabel(Mesh *mesh) {
 
 namespace {
 
-/// Those of vertices with \p width numbers each, in the order \p verts.
+/// Returns the data of vertices, \p width numbers each, in the order \p verts.
 std::vector<float> gather(std::vector<float> const &from, std::size_t width,
                           std::vector<int> const &verts) {
     std::vector<float> result;

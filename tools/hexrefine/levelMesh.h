@@ -24,13 +24,13 @@ std::vector<int> FindFaceClasses(Mesh const &mesh);
 /// Mesh::labels: a file has its objects, groups and materials one after the other.
 void CopyFaces(FarExt::TopologyLevel const &level, Mesh *mesh);
 
-/// \brief The same, with a further channel, the last of \p mesh, whose values are those of \p
+/// \brief Overload with a further channel, the last of \p mesh, whose values are those of \p
 /// sides.
 ///
 /// Hexagons that a sharp crease crosses become two quads as well.
 void CopyFaces(FarExt::TopologyLevel const &level, FarExt::LimitSides const &sides, Mesh *mesh);
 
-/// \brief The same, with the values of channels as properties of vertices: s, t and, of three
+/// \brief Overload with the values of channels as properties of vertices: s, t and, of three
 /// numbers, r; or nx, ny and nz.
 ///
 /// A vertex at which corners have different ones becomes several: the first in its place, the others

@@ -7,9 +7,9 @@
 
 namespace OpenSubdivHex::Tools {
 
-/// \brief What the statements mtllib of the OBJ file \p output have to say to mean the files that
-/// \p libraries, those of the OBJ file \p input, mean: paths that are not absolute count from the
-/// folder of the file.
+/// \brief Returns the paths for mtllib statements of the OBJ file \p output: they lead to the same files as
+/// \p libraries, the paths in the OBJ file \p input.  Relative paths count from the folder of their
+/// file.
 ///
 /// A statement names one file, with spaces or without, where there is such a file, else several: those
 /// that are there, and those whose names end in .mtl; words behind these name a file each.  In the same

@@ -9,10 +9,10 @@
 
 namespace OpenSubdivHex::Tools {
 
-/// What may have a colour of its own in a picture, as users call it.
+/// Values of --color: the parts of a mesh that get a colour each.
 inline std::vector<std::string> const kPictureColors = {"base-faces", "materials", "groups",
                                                         "objects", "levels"};
-/// That which cells of --adaptive alone have.
+/// The value for which --adaptive is needed.
 inline char const *const kLevelColors = "levels";
 
 /// \brief A number for each face of a control mesh, the same for those that get one colour.
@@ -23,7 +23,7 @@ inline char const *const kLevelColors = "levels";
 /// Throws FileError where no face has such a thing.
 std::vector<int> FindRegions(std::string const &colors, Mesh const &mesh, std::string const &path);
 
-/// \brief The same for each of the faces that \p mesh has now.
+/// \brief Returns these numbers for each of the faces that \p mesh has now.
 ///
 /// \param regions     of FindRegions()
 /// \param faceLevels  by face; taken for kLevelColors

@@ -290,7 +290,7 @@ void addCount(char const *name, std::vector<std::string> const &items,
     }
 }
 
-/// What is kept and what is not, a line for each kind.
+/// Returns a line for each kind of data: kept or dropped.
 std::string formatAttributes(Statistics const &statistics) {
     AttributeStatistics const &attributes = statistics.attributes;
     std::string lines;

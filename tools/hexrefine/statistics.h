@@ -37,8 +37,8 @@ struct PropertyStatistics {
     std::string type; ///< as PLY has it
 };
 
-/// \brief What a mesh has beside positions, faces and channels.  Names differ, in the order of the
-/// file.
+/// \brief The data of a mesh beside positions, faces and channels, in the order of the file.  Names
+/// differ.
 struct AttributeStatistics {
     std::vector<PropertyStatistics> vertexProperties;
     bool hasNormals = false; ///< among these, which are made 1 long
@@ -56,7 +56,7 @@ struct CoplanarStatistics {
     bool hasOpenGaps;
 };
 
-/// \brief What a run of hexrefine did: the content of `--stats`.
+/// \brief The content of `--stats`: facts of a run of hexrefine.
 struct Statistics {
     std::string scheme;
     std::string firstStep;

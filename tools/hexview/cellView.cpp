@@ -28,7 +28,7 @@ std::vector<float> gather(BfrExt::Surface<float> const &surface, std::vector<flo
     return result;
 }
 
-/// What makes values of the last level of a refiner; null where that is level 0.
+/// Makes the evaluator of a refiner's last level; null where that is level 0.
 std::unique_ptr<OsdExt::RefinementEvaluator> makeEvaluator(FarExt::TopologyRefiner const &refiner,
                                                            FarExt::StencilMode mode, int channel) {
     if (refiner.GetMaxLevel() == 0) {
@@ -75,10 +75,10 @@ CellView::CellView(Mesh const &mesh, std::unique_ptr<FarExt::TopologyRefiner> re
                         makeEvaluator(*_refiner, FarExt::INTERPOLATE_FACE_VARYING, uvChannel).get(),
                         _refiner->GetMaxLevel());
     }
-    _faces.resize(std::size_t(getBase().GetNumFaces()));
+    _faces.resize(std::size_t(_factory->GetNumFaces()));
     for (int number = 0; number < int(_faces.size()); ++number) {
         Face &face = _faces[std::size_t(number)];
-        if (getBase().IsFaceHole(number)) {
+        if (_factory->GetFaces().IsHole(number)) {
             continue;
         }
         requireOk(_factory->InitVertexSurface(number, &face.surface, &status), status);
@@ -120,6 +120,7 @@ void CellView::Refine(BfrExt::View const &view, std::vector<float> const &contro
 // surface level have sides; edges have one, or where they are sharp one for each face.
 void CellView::numberPlaces() {
     FarExt::TopologyLevel const base = getBase();
+    FarExt::SurfaceFaces const &faces = _factory->GetFaces();
     int const numVertices = base.GetNumVertices();
     int numPoints = int(_forest->GetNumBoundaryPoints());
     std::vector<int> sidesOfPoints(std::size_t(numPoints - numVertices), -1);
@@ -141,10 +142,13 @@ void CellView::numberPlaces() {
         face.points.resize(std::size_t(tessellation.GetNumCoords()));
         face.sides.clear();
         _forest->GetBoundaryPoints(number, face.points.data());
-        Far::ConstIndexArray const edges = base.GetFaceEdges(number);
+        auto const [levelFace, half] = faces.GetLevelFace(number);
         for (int local = 0; local < tessellation.GetFaceSize(); ++local) {
-            face.sides.push_back(_baseSides.FindSide(base, number, local));
-            bool const isSharp = base.IsEdgeInfSharp(edges[local]);
+            face.sides.push_back(
+                _baseSides.FindSide(base, levelFace, faces.GetPlace(number, local), half));
+            int const edge = faces.GetEdge(number, local).edge;
+            // Diagonals are sharp.
+            bool const isSharp = edge >= base.GetNumEdges() || base.IsEdgeInfSharp(edge);
             for (int i = 0; i < tessellation.GetNumEdgeCoords(local); ++i) {
                 int const point = face.points[face.sides.size()];
                 int &side = sidesOfPoints[std::size_t(point - numVertices)];
@@ -207,14 +211,14 @@ void CellView::addTriangles(int number, Face const &face) {
         float const *const coord = &coords[width * std::size_t(place)];
         _topology.coords.insert(_topology.coords.end(), coord, coord + 2);
     }
-    int const baseFace = getBase().GetFaceBaseFace(number);
+    int const baseFace = _factory->GetFaceBaseFace(number);
     for (int const level : levels) {
         _topology.triangleFaces.push_back(baseFace);
         _topology.triangleFaces.push_back(level);
     }
 }
 
-// Of what faces share, the last one is taken: points are the same to the bit, normals nearly so.
+// Where faces share a vertex, the last face counts: points are the same to the bit, normals nearly so.
 void CellView::Evaluate(std::vector<float> const &controlPoints) {
     struct Values {
         std::vector<float> points;

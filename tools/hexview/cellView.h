@@ -26,7 +26,7 @@ public:
     /// Throws std::runtime_error with the cause where a face has no surface.
     CellView(Mesh const &mesh, std::unique_ptr<FarExt::TopologyRefiner> refiner, int uvChannel);
 
-    /// What there is since Refine().
+    /// Counts since Refine().
     struct Statistics {
         BfrExt::View::Counts counts;
         int numPoints = 0;
@@ -39,7 +39,7 @@ public:
     /// Whether Refine() has found cells.
     bool IsRefined() const { return _forest.has_value(); }
     Statistics const &GetStatistics() const { return _statistics; }
-    /// Of what Refine() found.
+    /// The topology that Refine() found.
     DrawnTopology const &GetTopology() const { return _topology; }
 
     /// Makes the points of the limit surface at all vertices, and x y z 0 of the normal of each side.

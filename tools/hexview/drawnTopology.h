@@ -8,7 +8,7 @@ namespace OpenSubdivHex::Tools {
 
 constexpr int kLength = 3; ///< floats of a point
 
-/// \brief What is drawn of a surface but for its points: polygons, and the triangles they are cut into.
+/// \brief The drawing of a surface without its points: polygons, and the triangles they are cut into.
 ///
 /// Corners are sides of vertices: a vertex that a crease splits for shading has several, each with a
 /// normal of its own.

@@ -16,7 +16,7 @@ enum ArrayBinding : unsigned {
     kFaceArray
 };
 
-/// Of all shaders of drawings.
+/// The version of all shaders of drawings.
 inline constexpr char const *kVersion = "#version 430\n";
 
 /// \brief The normal of each side: the sum of the vector areas that it spans with its neighbours in
@@ -95,7 +95,7 @@ void main() {
 }
 )";
 
-/// What places show: for fragment shaders, behind their version.
+/// Colours of places: for fragment shaders, behind their version.
 inline constexpr char const *kShading = R"(
 uniform vec3 eye;
 uniform vec3 up;
@@ -118,7 +118,7 @@ vec3 getLevelColor(uint level) {
     return mix(vec3(0.95), getHue(0.66 - 0.11 * float(level % 7u)), 0.7);
 }
 
-// What a place shows; its curvature is the mean one, and it has a base face and a level.
+// The colour of a place; its curvature is the mean one, and it has a base face and a level.
 vec4 shade(vec3 position, vec3 normal, float curvature, vec2 coord, uvec2 face) {
     vec3 toEye = normalize(eye - position);
     vec3 n = shading == 1 ? normalize(cross(dFdx(position), dFdy(position))) : normalize(normal);
@@ -166,7 +166,7 @@ void main() {
 }
 )";
 
-/// What OpenSubdiv's shaders of patches ask for: the camera, and how finely they tessellate.
+/// Definitions that OpenSubdiv's shaders of patches need: the camera, and how finely they tessellate.
 inline constexpr char const *kPatchClient = R"(
 uniform mat4 view;
 uniform mat4 lens;

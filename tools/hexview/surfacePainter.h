@@ -16,7 +16,7 @@ namespace OpenSubdivHex::Tools {
 /// How faces are drawn; in the numbers of kSurfaceFragmentShader.
 enum class Shading { Smooth, Facets, Reflection, Curvature, BaseFaces, Checker, Levels };
 
-/// What is drawn.
+/// Settings of a drawing.
 struct DrawSettings {
     Shading shading = Shading::Smooth;
     bool hasFaces = true;

@@ -35,7 +35,7 @@ struct CellSettings {
     bool isCulling = false;
 };
 
-/// \brief What the topology of a surface depends on.
+/// \brief The settings that the topology of a surface depends on.
 struct SurfaceSettings {
     int level = 2;
     FarExt::HexSchemeOptions scheme;

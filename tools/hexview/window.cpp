@@ -85,7 +85,7 @@ bool chooseEnum(char const *label, char const *const (&names)[SIZE], ENUM *value
     return isChanged;
 }
 
-/// What the user does, and what comes of it.
+/// The window: takes the user's input and shows the surface.
 class Viewer {
 public:
     Viewer(Mesh const &mesh, SurfaceSettings const &settings, DrawSettings const &drawSettings,
@@ -134,7 +134,7 @@ private:
     double _time = 0;
 };
 
-// What cannot be refined is said, and the settings are those of before.
+// If refinement fails, the cause is shown, and the settings return to the last good ones.
 void Viewer::refine() {
     try {
         _surface.Refine(_settings);
@@ -155,7 +155,7 @@ void Viewer::follow(int width, int height) {
     }
 }
 
-// What is chosen of cells, and what became of them.
+// The settings of cells, and their counts.
 void Viewer::showCells() {
     CellSettings &cells = _settings.cells;
     ImGui::SliderFloat("pixel error", &cells.pixelError, kMinPixelError, kMaxPixelError, "%.2f",

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// What vertices and faces of mesh files have beside positions: colours and other numbers, objects,
-// groups and materials.  It is read, and written where the format holds it, or named.
+// Data of vertices and faces of mesh files beside positions: colours and other numbers, objects,
+// groups and materials.  They are read, and written where the format holds them, or named.
 #include "meshContent.h"
 #include "meshFileFixture.h"
 #include "meshWriter.h"

@@ -12,7 +12,7 @@
 
 namespace OpenSubdivHex::Tools {
 
-/// \brief What makes some edges, vertices and faces of a mesh special, and the rules that its file
+/// \brief Sharp edges, sharp vertices and holes of a mesh, and the rules that its file
 /// asks for.  Each edge, vertex and face is named once, with a sharpness above 0.
 struct MeshTags {
     using Options = OpenSubdiv::Sdc::Options;
@@ -67,8 +67,8 @@ struct FaceProperty {
     std::vector<double> values{};        ///< by base face
 };
 
-/// What the statements of OBJ files say of a face, each in the words behind its keyword; empty where
-/// nothing is said.
+/// The statements of an OBJ file for a face, each as the words behind its keyword; empty without a
+/// statement.
 struct FaceLabel {
     std::string object{};    ///< o
     std::string groups{};    ///< g
@@ -83,8 +83,8 @@ inline bool operator==(FaceLabel const &a, FaceLabel const &b) {
 
 /// \brief A polygon mesh as flat arrays, the form that Far::TopologyDescriptor takes.
 ///
-/// What faces have (labels, properties) is kept by base face, the face of the mesh that it was
-/// refined from; without such, each face is its own base face.
+/// Data of faces (labels, properties) are kept by base face: the face of the mesh that a face was
+/// refined from.  In a mesh that was not refined each face is its own base face.
 struct Mesh {
     std::vector<float> positions{};  ///< x y z of each vertex
     std::vector<int> faceSizes{};    ///< number of corners of each face

@@ -10,7 +10,7 @@
 
 namespace OpenSubdivHex::Tools {
 
-/// What comes before a piece of a mesh.
+/// Counts of the pieces before a piece of a mesh.
 struct MeshStart {
     std::int64_t vertex = 0;
     std::vector<std::int64_t> values{}; ///< by channel; empty: none

@@ -10,7 +10,7 @@ namespace OpenSubdivHex::Tools {
 /// The list of the vertices of a face in PLY files that are written.
 inline constexpr char const *kPlyFaceVertices = "vertex_indices";
 
-/// What files of a format hold of a mesh, beside its positions and faces.
+/// The parts of a mesh that files of a format hold, beside its positions and faces.
 struct MeshContent {
     bool hasChannels = false;
     bool hasLabels = false; ///< and material libraries

@@ -46,7 +46,7 @@ inline bool operator==(FaceProperty const &a, FaceProperty const &b) {
     return a.name == b.name && a.type == b.type && a.values == b.values;
 }
 
-/// Of meshes whose faces are their own base faces.
+/// Compares meshes whose faces are their own base faces.
 inline void expectEqual(Mesh const &a, Mesh const &b) {
     EXPECT_EQ(a.faceSizes, b.faceSizes);
     EXPECT_EQ(a.faceVertices, b.faceVertices);

@@ -224,7 +224,7 @@ protected:
 TEST_F(ObjBackslash, JoinsLines) {
     EXPECT_TRUE(
         read("f 1 2 \\\n 3 4\nusemtl wood \\\noak\\\n\nf 1 2 3\n", {4, 3}, "wood  oak").empty());
-    // What looks like a keyword, but not like a statement.
+    // A line may begin with a keyword, and be no statement.
     EXPECT_TRUE(read("usemtl wood\\\nf\nf 1 2 3\n", {3}, "wood f").empty());
     EXPECT_TRUE(read("usemtl wood\\\nl x 1\nf 1 2 3\n", {3}, "wood l x 1").empty());
     EXPECT_TRUE(read("\\\nf 1 2 3\n \\\n\\\nf 1 2 3\\", {3, 3}).empty());
@@ -257,7 +257,7 @@ TEST_F(ObjBackslash, LosesNoStatement) {
         read("f 1 2 3\ng a \\\nb\\\nf 1 2 3\nusemtl wood\\\ng c\\\nf 1 2 3\n", {3, 3, 3}, "wood\\"),
         Warnings{"the backslash at the end of line 7" + cause + "f', the first of 3 such lines"});
     expectRefused("a.obj", "v 0 0 0\\\nv 1 0 0\n", "line 1: '0\\' is not a finite number");
-    // Of a comment it is a part.
+    // Within a comment, a backslash is text.
     EXPECT_TRUE(read("# C:\\models\\\nf 1 2 3\n", {3}).empty());
 }
 

@@ -268,7 +268,7 @@ class LabelPrinter {
 public:
     explicit LabelPrinter(Mesh const &mesh) : _mesh(mesh) {}
 
-    /// Those before a face.
+    /// Formats the statements before a face.
     std::string Format(int face) const {
         if (_mesh.faceLabels.empty() || (face > 0 && getIndex(face - 1) == getIndex(face))) {
             return "";
@@ -457,7 +457,7 @@ void writePlyVertices(Mesh const &mesh, WriteBytes const &write) {
         }
         return out;
     };
-    // Of a vertex.
+    // Bytes of a vertex.
     std::size_t const numBytes =
         12 + describeProperties(mesh.vertexProperties, content.vertexProperties).second;
     writeItems(

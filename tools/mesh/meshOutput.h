@@ -14,7 +14,7 @@ namespace OpenSubdivHex::Tools {
 /// Takes the bytes of a file, in their order.
 using WriteBytes = std::function<void(std::string_view)>;
 
-/// What the header of a file says.
+/// The counts in the header of a file.
 struct MeshCounts {
     std::int64_t vertices = 0;
     std::int64_t faces = 0;

@@ -17,8 +17,8 @@ namespace OpenSubdivHex::Tools {
 /// and faces are those of the file, in its order, or the file is refused.  Texture coordinates
 /// become a channel when faces name them, and so do normals; either all corners of all faces have
 /// one or none, else the file is refused.  What else the file has is named in Mesh::notRead.
-/// Of OBJ, a backslash joins a line with the next, unless that begins with a statement: it is part of the
-/// line then, with one of Mesh::warnings.
+/// In OBJ files, a backslash joins a line with the next one.  If that begins with a statement, the backslash is part
+/// of the line, with one of Mesh::warnings.
 /// Whether the faces make a surface is not looked at; that is TopologyRefinerFactory's task.
 ///
 /// Throws FileError, which names line, vertex or face, for anything it cannot read as it stands:
@@ -29,7 +29,7 @@ Mesh ReadMesh(std::string const &path);
 
 namespace internal {
 
-/// What ReadMesh makes of a file with this content.
+/// ReadMesh() for a file with this content.
 Mesh ParseMesh(std::string const &path, std::string content);
 
 /// The readers of the formats.  \p content is the content of the file \p path and is changed.

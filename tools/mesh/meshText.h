@@ -37,7 +37,7 @@ bool ParseInt(std::string_view word, int *value);
 /// it then gives, correctly rounded).
 bool ParseFiniteFloat(std::string_view word, float *value);
 
-/// What a word is that ParseFiniteFloat() refuses: "not a finite number", or one "out of the range of
+/// Says why ParseFiniteFloat() refuses a word: "not a finite number", or one "out of the range of
 /// floats".
 std::string NameFloatFailure(std::string_view word);
 

@@ -11,8 +11,8 @@ namespace OpenSubdivHex::Tools {
 /// \brief Writes \p mesh in the format that the extension of \p path names: OBJ and OFF as text,
 /// PLY in little-endian binary.
 ///
-/// What FindContent() says is written (channels: one of each kind at most), in OBJ files with the
-/// statements of a label where it differs from that of the face before; tags are written to none.
+/// Writes the content that FindContent() finds, with one channel of each kind at most; in OBJ files a label's
+/// statements stand where it differs from that of the face before.  No file gets tags.
 /// Numbers of integer types are rounded to the nearest that the type has.  OBJ has colours of
 /// integers divided by the largest that the type has.
 ///

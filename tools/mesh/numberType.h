@@ -23,7 +23,7 @@ inline bool IsInteger(NumberType type) {
     return type != NumberType::Float && type != NumberType::Double;
 }
 
-/// Of an integer type.
+/// The range of an integer type.
 /// @{
 double GetMin(NumberType type);
 double GetMax(NumberType type);

@@ -101,7 +101,7 @@ void joinContinuedLines(std::string *text, Mesh *mesh) {
 
 constexpr char kVertexName[] = "vertex";
 
-/// What the corners of faces have beside their vertices.
+/// Data of corners beside their vertices.
 struct Attribute {
     FVarKind kind;
     char const *name;

@@ -14,7 +14,7 @@ namespace OpenSubdivHex::Tools::internal {
 
 namespace {
 
-/// What the header word of an OFF file says about its vertices.
+/// The header word of an OFF file: the data of its vertices.
 struct OffHeader {
     bool isKnown;
     bool hasTexcoords;

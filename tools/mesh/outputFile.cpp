@@ -22,7 +22,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// What a path leads to, there or not; still a link when there are too many.
+/// Returns the path behind all links, there or not; still a link when there are too many.
 std::string followLinks(std::string const &path) {
     constexpr int kMaxLinks = 40; // as Linux has it
     fs::path result = path;

@@ -123,8 +123,8 @@ void PieceWriter::checkCounts() const {
     }
 }
 
-// Of binary faces, numbers of corners take four bytes where some face of another piece has too many for
-// one.
+// In binary files, numbers of corners take four bytes where some face of another piece has too many for
+// one byte.
 void PieceWriter::writeBlock(Block const &block, WriteBytes const &write) {
     if (_format != MeshFormat::Ply || block.hasShortFaces == _counts.hasShortFaces) {
         _faces.Read(block.offset, block.size, write);

@@ -35,7 +35,7 @@ public:
     void Commit(Mesh const &front);
 
 private:
-    // What is written behind one another, and read again.
+    // Bytes that are appended, and read again later.
     class ScratchFile {
     public:
         explicit ScratchFile(std::string const &path);

@@ -18,7 +18,7 @@ struct PlyProperty {
     NumberType countType = NumberType::UChar; ///< of the length of a list, an integer type
 };
 
-/// What a file has a number of, such as vertices.
+/// A kind of items in a file, such as vertices.
 struct PlyElement {
     std::string name;
     int count;

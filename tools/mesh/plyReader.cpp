@@ -111,7 +111,7 @@ private:
     Item _item{};
 };
 
-/// The same for a binary file.
+/// Reads numbers of a binary file.
 class BinarySource {
 public:
     BinarySource(std::string const &path, PlyHeader const &header)

@@ -109,9 +109,9 @@ inline Mesh ReadInput(std::string const &program, std::string const &path) {
     return mesh;
 }
 
-/// \brief What main does: reads the command line into \p app, calls work() and gives the exit code.
+/// \brief The body of main: reads the command line into \p app, calls work() and returns the exit code.
 ///
-/// Whatever they throw ends the program with one line, "PROGRAM: cause"; a CLI::ParseError, which
+/// Any exception ends the program with one line, "PROGRAM: cause"; a CLI::ParseError, which
 /// work may throw too, with CLI11's text behind the name.
 template <typename WORK>
 int RunProgram(CLI::App &app, int argc, char const *const *argv, WORK work) {

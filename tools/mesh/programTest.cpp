@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// What programs print of exceptions, and their exit codes.
+// Messages of programs for exceptions, and their exit codes.
 #include "program.h"
 
 #include <gtest/gtest.h>

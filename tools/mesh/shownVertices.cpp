@@ -16,7 +16,7 @@ public:
 
     void Add(int vertex) { _isMarked[std::size_t(vertex)] = true; }
 
-    /// Those that are marked, in ascending order.
+    /// Returns the marked vertices, in ascending order.
     std::vector<int> Find() const {
         std::vector<int> vertices;
         for (std::size_t vertex = 0; vertex < _isMarked.size(); ++vertex) {

@@ -73,7 +73,7 @@ Camera::Camera(View view, std::vector<float> const &points, float aspect) {
 Camera::Camera(Vec3 eye, Vec3 target, float fieldOfView, float aspect)
     : _position(eye), _back(Normalize(eye - target)),
       _height(2 * std::tan(fieldOfView / 2 * kDegree)) {
-    // What is up, unless the camera looks up or down.
+    // The direction up, unless the camera looks up or down.
     bool const isUpright = std::abs(_back.x) + std::abs(_back.z) > 0;
     _right = Normalize(Cross(isUpright ? Vec3{0, 1, 0} : Vec3{0, 0, -1}, _back));
     _up = Cross(_back, _right);

@@ -170,7 +170,7 @@ public:
     }
 
 private:
-    /// What reaches a point: each light's part that is not in the shadow.
+    /// Light at a point: the part of each light that is not in the shadow.
     struct Light {
         float key;     ///< 0 to 1, without the angle of incidence
         Vec3 sky;      ///< with the angle of incidence

@@ -13,7 +13,7 @@ struct RTCSceneTy;
 
 namespace OpenSubdivHex::Tools {
 
-/// \brief What a picture shows, in Embree's hands: a surface, rods, both or neither.
+/// \brief The content of a picture as an Embree scene: a surface, rods, both or neither.
 class Scene {
 public:
     /// Throws std::runtime_error when Embree does not start.

@@ -14,7 +14,7 @@ using BfrExt::LevelTessellation;
 using BfrExt::PatchStream;
 using BfrExt::Polyline;
 using FarExt::CallStatus;
-using FarExt::TopologyLevel;
+using FarExt::SurfaceFaces;
 
 namespace {
 
@@ -170,7 +170,7 @@ PatchNumbering::SectionNumbers::SectionNumbers(POLYGONS const &polygons, int fac
 template <typename REAL>
 std::unique_ptr<PatchNumbering> PatchNumbering::Create(PatchStream<REAL> const &stream,
                                                        CallStatus *status) {
-    TopologyLevel const &base = stream.GetFactory().GetLevel();
+    SurfaceFaces const &base = stream.GetFactory().GetFaces();
     struct FaceInSections {
         typename PatchStream<REAL>::SectionPolygons polygons;
         std::vector<SectionCounts> sections;
@@ -209,15 +209,15 @@ std::unique_ptr<PatchNumbering> PatchNumbering::Create(PatchStream<REAL> const &
         });
     for (auto &[face, ofFace] : inSections) {
         auto numbers = std::make_shared<SectionNumbers const>(
-            ofFace.polygons, base.GetFaceVertices(face).size(), ofFace.sections);
+            ofFace.polygons, base.GetShape(face).size, ofFace.sections);
         numbering->_maxFacetSize = std::max(numbering->_maxFacetSize, numbers->GetMaxFacetSize());
         numbering->_sections.emplace(face, std::move(numbers));
         ofFace = {};
     }
     Number next = 0;
-    for (Index vert = 0; vert < base.GetNumVertices(); ++vert) {
+    for (Index vert = 0; vert < stream.GetFactory().GetLevel().GetNumVertices(); ++vert) {
         numbering->_pointOfVertex.push_back(next);
-        next += numbering->findOwner(base.GetVertexFaces(vert)) == Far::INDEX_INVALID ? 0 : 1;
+        next += numbering->findVertexOwner(vert) == Far::INDEX_INVALID ? 0 : 1;
     }
     // By level; the long edge of half a polygon has the points of another level.
     std::array<int, Polyline::kLastLevel + 2> numEdgePoints;
@@ -225,13 +225,12 @@ std::unique_ptr<PatchNumbering> PatchNumbering::Create(PatchStream<REAL> const &
         numEdgePoints[level] = Polyline(int(level)).GetNumPoints();
     }
     auto const isLongEdge = [&](Index edge) {
-        Index const face = base.GetEdgeFaces(edge)[0];
-        return base.GetFaceEdges(face)[0] == edge &&
-               stream.GetFactory().GetFaceParameterization(face).GetFaceShape().isHalf;
+        auto const [face, local] = base.GetSide(edge, 0);
+        return local == 0 && base.GetShape(face).isHalf;
     };
     for (Index edge = 0; edge < base.GetNumEdges(); ++edge) {
         numbering->_firstPointOfEdge.push_back(next);
-        if (numbering->findOwner(base.GetEdgeFaces(edge)) == Far::INDEX_INVALID) {
+        if (numbering->findEdgeOwner(edge) == Far::INDEX_INVALID) {
             continue;
         }
         next += stream.GetForest()
@@ -269,11 +268,25 @@ template std::unique_ptr<PatchNumbering> PatchNumbering::Create(PatchStream<doub
                                                                 CallStatus *);
 
 // The first of the faces that is no hole.
-Far::Index PatchNumbering::findOwner(Far::ConstIndexArray faces) const {
-    TopologyLevel const &base = _factory.GetLevel();
-    auto const found = std::find_if(faces.begin(), faces.end(),
-                                    [&](Index face) { return !base.IsFaceHole(face); });
-    return found == faces.end() ? Far::INDEX_INVALID : *found;
+Far::Index PatchNumbering::findVertexOwner(Index vert) const {
+    SurfaceFaces const &base = _factory.GetFaces();
+    for (Index const face : base.GetVertexFaces(vert)) {
+        if (!base.IsHole(face)) {
+            return face;
+        }
+    }
+    return Far::INDEX_INVALID;
+}
+
+Far::Index PatchNumbering::findEdgeOwner(Index edge) const {
+    SurfaceFaces const &base = _factory.GetFaces();
+    for (int side = 0; side < 2; ++side) {
+        Index const face = base.GetSide(edge, side).face;
+        if (face != Far::INDEX_INVALID && !base.IsHole(face)) {
+            return face;
+        }
+    }
+    return Far::INDEX_INVALID;
 }
 
 PatchNumbering::SectionNumbers const *PatchNumbering::findSections(Index face) const {
@@ -293,40 +306,41 @@ PatchNumbering::Number PatchNumbering::GetFirstFacetVertex(Index face, int secti
 
 // A face may have a vertex, or an edge, twice: then it belongs to the first place.
 bool PatchNumbering::isVertexOwn(Index face, int local) const {
-    TopologyLevel const &base = _factory.GetLevel();
-    Far::ConstIndexArray const verts = base.GetFaceVertices(face);
-    auto const *const begin = verts.begin();
-    return std::find(begin, begin + local, verts[local]) == begin + local &&
-           findOwner(base.GetVertexFaces(verts[local])) == face;
+    SurfaceFaces const &base = _factory.GetFaces();
+    Index const vert = base.GetVertex(face, local);
+    for (int before = 0; before < local; ++before) {
+        if (base.GetVertex(face, before) == vert) {
+            return false;
+        }
+    }
+    return findVertexOwner(vert) == face;
 }
 
 // Points first ... first + count - 1 of an edge, counted in the direction of the face.
 PatchNumbering::Run PatchNumbering::makeEdgeRun(Index face, int local, int place, int first,
                                                 int count) const {
-    TopologyLevel const &base = _factory.GetLevel();
-    Far::ConstIndexArray const edges = base.GetFaceEdges(face);
-    Index const edge = edges[local];
-    Far::ConstIndexArray const edgeFaces = base.GetEdgeFaces(edge);
-    bool const isForward = edgeFaces[0] == face && base.GetEdgeFaceLocalIndices(edge)[0] == local;
-    auto const *const begin = edges.begin();
-    bool const isFirst = std::find(begin, begin + local, edge) == begin + local;
-    Number const point = isForward ? _firstPointOfEdge[std::size_t(edge)] + first
-                                   : _firstPointOfEdge[std::size_t(edge) + 1] - 1 - first;
-    return {place, count, isForward ? 1 : -1, point, isFirst && findOwner(edgeFaces) == face};
+    SurfaceFaces const &base = _factory.GetFaces();
+    auto const [edge, isReversed] = base.GetEdge(face, local);
+    bool isFirst = true;
+    for (int before = 0; before < local; ++before) {
+        isFirst = isFirst && base.GetEdge(face, before).edge != edge;
+    }
+    Number const point = isReversed ? _firstPointOfEdge[std::size_t(edge) + 1] - 1 - first
+                                    : _firstPointOfEdge[std::size_t(edge)] + first;
+    return {place, count, isReversed ? -1 : 1, point, isFirst && findEdgeOwner(edge) == face};
 }
 
 void PatchNumbering::GetRuns(Index face, LevelTessellation const &tessellation,
                              std::vector<Run> &runs) const {
     runs.clear();
-    Far::ConstIndexArray const verts = _factory.GetLevel().GetFaceVertices(face);
     Number const firstPoint = _firstPointOfFace[std::size_t(face)];
     SectionNumbers const *const sections = findSections(face);
     SectionNumbers::Item const *item =
         sections ? sections->GetItems(tessellation.GetSection()) : nullptr;
     int place = 0;
     auto const addVertex = [&](int local) {
-        runs.push_back(
-            {place, 1, 1, _pointOfVertex[std::size_t(verts[local])], isVertexOwn(face, local)});
+        Index const vert = _factory.GetFaces().GetVertex(face, local);
+        runs.push_back({place, 1, 1, _pointOfVertex[std::size_t(vert)], isVertexOwn(face, local)});
     };
     for (int i = 0; i < tessellation.GetNumEdges(); ++i) {
         int const count = tessellation.GetNumEdgeCoords(i);

@@ -88,7 +88,8 @@ private:
 
     explicit PatchNumbering(BfrExt::SurfaceFactory const &factory) : _factory(factory) {}
 
-    Index findOwner(Far::ConstIndexArray faces) const;
+    Index findVertexOwner(Index vert) const;
+    Index findEdgeOwner(Index edge) const;
     bool isVertexOwn(Index face, int local) const;
     Run makeEdgeRun(Index face, int local, int place, int first, int count) const;
     SectionNumbers const *findSections(Index face) const;

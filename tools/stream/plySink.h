@@ -18,8 +18,8 @@ namespace OpenSubdivHex::Tools {
 /// place before the first patch comes, so threads and processes write it together, each what its
 /// patches have, and the file is the same, bit for bit.
 ///
-/// What patches have is gathered, some megabytes at a time, and written in the order of the file, so that pieces
-/// which follow one another are written at once: Flush() writes the last of it when the stream has ended.
+/// Data of patches are gathered, some megabytes at a time, and written in the order of the file, so that
+/// consecutive pieces are written at once.  Flush() writes the rest when the stream has ended.
 ///
 /// It is a binary file, with the byte order of the machine: points with x, y and z, in the numbers of
 /// PatchNumbering, and facets.  Points that patches share are in it once.
@@ -60,7 +60,7 @@ private:
     using Patch = typename BfrExt::PatchStream<REAL>::Patch;
     using Runs = std::vector<PatchNumbering::Run>;
 
-    // What a patch has of the file.
+    // The part of the file that a patch fills.
     struct Piece {
         std::uint64_t offset;
         std::size_t begin; // in the bytes
@@ -70,7 +70,7 @@ private:
         std::vector<Piece> pieces;
         std::vector<char> bytes;
     };
-    // What is not written yet.
+    // Data not written yet.
     struct Gathered {
         std::mutex mutex;
         std::vector<PatchBytes> patches;

@@ -63,7 +63,7 @@ struct Roots {
     int GetNumRoots() const { return int(faces.size()); }
 };
 
-/// What a frame makes of roots: x y z for each.
+/// Roots in a frame: x y z for each.
 struct GrownRoots {
     explicit GrownRoots(int numRoots)
         : points(3 * std::size_t(numRoots)), du(points.size()), dv(points.size()) {}
@@ -132,7 +132,7 @@ std::vector<float> sway(std::vector<float> positions, float time) {
     return positions;
 }
 
-/// What SurfacePlaces does, by Bfr on OpenSubdiv's surface.
+/// SurfacePlaces by Bfr, on OpenSubdiv's surface.
 class BfrPlaces {
 public:
     BfrPlaces(Bfr::RefinerSurfaceFactory<> const &factory, Roots const &roots)

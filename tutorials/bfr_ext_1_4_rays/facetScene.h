@@ -34,7 +34,7 @@ public:
         Vec3 point;     ///< of the facet
         float side = 0; ///< length of the facet's longest one
     };
-    /// What a ray hits first.  Threads may trace at once.
+    /// Finds the first hit of a ray.  Threads may trace at once.
     Hit Intersect(Vec3 origin, Vec3 direction) const;
     /// Whether it hits anything.
     bool IsOccluded(Vec3 origin, Vec3 direction) const;

@@ -72,7 +72,7 @@ int main() {
     // Faces may be half a pixel away from the surface.
     BfrExt::View::Options viewOptions;
     viewOptions.SetFlatness(0.5).SetCulling(true).SetMaxLevel(9);
-    // What does not depend on the camera is found in the first frame that asks for it.
+    // Bounds do not depend on the camera: the first frame that needs one finds it.
     BfrExt::ViewBounds bounds(*factory);
     std::optional<BfrExt::CellForest> last;
     bool areClosed = true;

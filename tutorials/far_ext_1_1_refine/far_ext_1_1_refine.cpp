@@ -34,7 +34,7 @@ std::unique_ptr<FarExt::TopologyRefiner> createRefiner(Tools::Mesh const &mesh) 
     return refiner;
 }
 
-// What the faces of a level were made from, by walking over its edges: on a closed mesh each edge
+// Walks over the edges of a level and asks what its faces were made from: on a closed mesh each edge
 // of an F-face lies between that F-face and a hexagon.
 bool areFacesSeparatedByHexagons(FarExt::TopologyLevel const &level) {
     for (int face = 0; face < level.GetNumFaces(); ++face) {

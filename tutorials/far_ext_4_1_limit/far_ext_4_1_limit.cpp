@@ -27,7 +27,7 @@ namespace Osd = OpenSubdiv::Osd;
 int main() {
     Tools::Mesh const cube = Tools::MakeCube();
     auto const refiner = FarExt::TopologyRefinerFactory::Create(Tools::DescribeTopology(cube));
-    // What lies around a vertex must be known: the last level needs its full topology too.
+    // Limits need the neighborhoods of vertices: the last level needs its full topology, too.
     FarExt::TopologyRefiner::UniformOptions refineOptions(1);
     refineOptions.fullTopologyInLastLevel = true;
     if (!refiner || !refiner->RefineUniform(refineOptions)) {

@@ -71,7 +71,7 @@ std::unique_ptr<Osd::CpuVertexBuffer> evaluate(Mesh const &mesh) {
     return result;
 }
 
-// The same without table and evaluator, to compare with: see far_ext_2_1_primvars.
+// Refines without table and evaluator, to compare with: see far_ext_2_1_primvars.
 std::vector<Point> refineLevelByLevel(Mesh const &mesh) {
     auto const refiner = FarExt::TopologyRefinerFactory::Create(*createBase(mesh));
     refiner->RefineUniform(kLevel);

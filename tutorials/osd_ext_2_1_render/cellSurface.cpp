@@ -79,7 +79,7 @@ CellSurface::CellSurface(FarExt::TopologyRefiner const &refiner) {
     _factory = BfrExt::SurfaceFactory::Create(
         refiner, BfrExt::SurfaceFactory::Options().SetExternalCache(&_cache), &status);
     for (int face = 0; _factory && status.IsOk() && face < _factory->GetNumFaces(); ++face) {
-        if (!_factory->GetLevel().IsFaceHole(face)) {
+        if (!_factory->GetFaces().IsHole(face)) {
             _factory->FaceHasLimitSurface(face, &status);
         }
     }
@@ -114,9 +114,9 @@ void CellSurface::Update(std::vector<float> const &positions, Camera const &came
     std::vector<Patch> patches;
     std::vector<int> corners; // of all polygons: the place in the patch
     int numPoints = int(_forest->GetNumBoundaryPoints());
-    std::vector<int> faces; // of the surface level, by polygon
-    for (int face = 0; face < base.GetNumFaces(); ++face) {
-        if (base.IsFaceHole(face)) {
+    std::vector<int> faces; // of the factory, by polygon
+    for (int face = 0; face < _factory->GetNumFaces(); ++face) {
+        if (_factory->GetFaces().IsHole(face)) {
             continue;
         }
         patches.push_back(
@@ -151,7 +151,7 @@ void CellSurface::Update(std::vector<float> const &positions, Camera const &came
     }
     _baseFaces.resize(faces.size());
     std::transform(faces.begin(), faces.end(), _baseFaces.begin(),
-                   [&](int face) { return base.GetFaceBaseFace(face); });
+                   [&](int face) { return _factory->GetFaceBaseFace(face); });
     if (faces.empty()) {
         return;
     }

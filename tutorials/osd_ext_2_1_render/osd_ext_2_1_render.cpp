@@ -4,9 +4,9 @@
 //
 //     A renderer with hexagonal subdivision surfaces, on Embree's ray tracing kernels.
 //
-//     What a renderer does at load time is in the constructor of Panel: the refiner, the limit
-//     stencil table, the buffers and the triangle indices, all made once.  What it does for each frame
-//     is in Panel::Update: it evaluates the table for the frame's control positions and hands the
+//     The constructor of Panel has what a renderer does at load time: the refiner, the limit
+//     stencil table, the buffers and the triangle indices, all made once.  Panel::Update has the work
+//     of each frame: it evaluates the table for the frame's control positions and hands the
 //     refined triangles to the ray tracer.  With --adaptive there is no table: for each frame the mesh
 //     is refined as far as its camera needs (cellSurface.h).  The rest of this file is about options;
 //     the pictures themselves are made in tools/render (scene.h, renderer.h).
@@ -45,7 +45,7 @@ namespace Osd = OpenSubdiv::Osd;
 
 constexpr char kName[] = "osd_ext_2_1_render";
 
-// What may differ from one panel of a picture to the next.
+// Settings that may differ from one panel of a picture to the next.
 struct PanelSettings {
     int level = 4;
     bool isAdaptive = false;
@@ -173,7 +173,7 @@ void addOptions(CLI::App &app, Arguments *arguments) {
     app.footer("Exit status: 0 success, 1 bad input or failed output, 2 bad usage.");
 }
 
-// What concerns several options together; throws CLI::ValidationError.
+// Checks options that depend on each other; throws CLI::ValidationError.
 void checkArguments(Arguments const &arguments) {
     if (arguments.width < arguments.GetNumColumns() || arguments.height < arguments.GetNumRows()) {
         throw CLI::ValidationError("--size", arguments.size + " is too small for the panels");

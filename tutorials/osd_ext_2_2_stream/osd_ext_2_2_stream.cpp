@@ -4,7 +4,7 @@
 //
 //     A path tracer that makes of the surface what its rays come near to, when they do, and forgets it.
 //
-//     What makes a picture is a stream of patches whose sink is Embree (patchScene.h): at
+//     The picture is made by a stream of patches whose sink is Embree (patchScene.h): at
 //     first there is a box for each base face.  When a ray hits a box, the patch in it is made, with a
 //     level for each edge that follows from its size in the picture; and patches that no ray has needed
 //     for long are forgotten when they would take more memory than they may.  Since a patch is the same

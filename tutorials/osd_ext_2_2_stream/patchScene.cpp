@@ -263,7 +263,7 @@ SharedScene PatchScene::Patches::make(unsigned primitive, std::int64_t *numTrian
     FarExt::ExecutorScope const alone(nullptr, 1);
     SharedScene scene(rtcNewScene(_device.get()), Release());
     rtcSetSceneFlags(scene.get(), RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_COMPACT);
-    // Of a large face, several sections.
+    // A large face has several sections.
     auto const sink = [&](BfrExt::PatchStream<float>::Patch const &patch) {
         RTCGeometry const geometry = rtcNewGeometry(_device.get(), RTC_GEOMETRY_TYPE_TRIANGLE);
         auto const numPoints = std::size_t(patch.tessellation.GetNumCoords());

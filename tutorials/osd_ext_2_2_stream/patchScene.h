@@ -16,9 +16,9 @@ namespace OpenSubdivHex::Tools {
 /// \brief The surface of a mesh for rays, in Embree's hands, of which only those parts are there that
 /// rays have come near to.
 ///
-/// Of each base face there is a box.  Its patch is made when a ray first hits the box; and when all
-/// patches take more memory than they may, those are forgotten that no ray has needed for the longest
-/// time.  What rays hit does not depend on that: a patch that is made again is the same, bit for bit.
+/// Each base face has a box.  Its patch is made when a ray first hits the box.  When all
+/// patches take more memory than they may, the least recently used ones go.
+/// Hits of rays do not depend on that: a patch that is made again is the same, bit for bit.
 ///
 /// Rays may be traced by several threads at once.
 class PatchScene {
@@ -54,7 +54,7 @@ public:
     /// Whether it hits something nearer than \p distance.
     bool IsOccluded(Vec3 origin, Vec3 direction, float distance) const;
 
-    /// What has happened so far.
+    /// Counts so far.
     struct Statistics {
         std::int64_t numMade;      ///< patches, each as often as it was made
         std::int64_t numForgotten; ///< of these

@@ -32,7 +32,7 @@ namespace Osd = OpenSubdiv::Osd;
 
 namespace {
 
-// What EvalPatches takes: a buffer of places.
+// An argument of EvalPatches: a buffer of places.
 struct CoordBuffer {
     Osd::PatchCoord *BindCpuBuffer() { return coords.data(); }
     std::vector<Osd::PatchCoord> coords;

@@ -42,7 +42,7 @@ namespace {
 constexpr int kWidth = 800;
 constexpr int kHeight = 600;
 
-// What OpenSubdiv's shaders ask for.
+// Declarations that OpenSubdiv's shaders need.
 constexpr char kClient[] = R"(
 uniform mat4 view;
 uniform mat4 lens;
@@ -56,7 +56,7 @@ int OsdPrimitiveIdBase() { return firstPatch; }
 int OsdBaseVertex() { return 0; }
 )";
 
-// What they give: place and normal in the space of the eye, and (s, t) in the patch.
+// Their output is the input here: place and normal in the space of the eye, and (s, t) in the patch.
 constexpr char kFragmentShader[] = R"(
 in block { OutputVertex v; } inpt;
 out vec4 color;
@@ -119,7 +119,7 @@ Tools::ViewProgram makeProgram() {
 
 void draw(Far::PatchTable const &patches, Osd::CpuVertexBuffer &points,
           Tools::OrbitCamera const &camera) {
-    // What stays while the mesh moves.
+    // Made once, and kept while the mesh moves.
     std::unique_ptr<Osd::GLPatchTable> const table(Osd::GLPatchTable::Create(&patches));
     Tools::ViewProgram const program = makeProgram();
 
