@@ -56,7 +56,7 @@ bool isInLattice(LimitPatch const &patch) {
     int const valence = CellType::GetLatticeValence(faceSize);
     auto const isSame = [&](int size) { return size == faceSize; };
     if (valence == 0 || !std::all_of(patch.faceSizes.begin(), patch.faceSizes.end(), isSame) ||
-        isSharp(patch) || !patch.sectorCorners.empty() || !patch.quadCorners.empty()) {
+        isSharp(patch) || patch.HasCornerTags()) {
         return false;
     }
     // Vertices where the patch ends have fewer faces.
@@ -119,10 +119,10 @@ struct Projection {
 
 std::size_t GetCellHeapSize(CellPatch const &cell) {
     LimitPatch const &patch = cell.patch;
-    std::size_t size = GetHeapSizes(cell.locals, cell.corners, patch.sources, patch.faceSizes,
-                                    patch.faceVerts, patch.otherCorners, patch.edgeSharpness,
-                                    patch.diagonalSharpness, patch.vertSharpness,
-                                    patch.sectorCorners, patch.irregularCorners, patch.signature);
+    std::size_t size = GetHeapSizes(
+        cell.locals, cell.corners, patch.sources, patch.faceSizes, patch.faceVerts,
+        patch.otherCorners, patch.edgeSharpness, patch.diagonalSharpness, patch.vertSharpness,
+        patch.sectorCorners, patch.irregularCorners, patch.lineRowCorners, patch.signature);
     QuadCorners::ForEachArray(patch.quadCorners,
                               [&size](auto const &array) { size += GetHeapSizes(array); });
     return size;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "limitMask.h"
 
+#include "far_ext/vtr/lineFeatures.h"
 #include "far_ext/vtr/pi.h"
 #include "patchCycle.h"
 
@@ -648,8 +649,12 @@ LimitMask makePlainFaceMask(int size) {
 LimitMask FaceLimitMaskFinder::Find(Index face) const {
     int const size = _level.GetFaceSize(face);
     bool const isHalf = _level.IsHalfFace(face);
-    if (!isHalf && !Crease::IsInfinite(_level.GetDiagonalSharpness(face))) {
-        return IsPlain(face) ? makePlainFaceMask(size) : findAfterStep(face);
+    bool const isInHalves = isHalf || Crease::IsInfinite(_level.GetDiagonalSharpness(face));
+    if (isInHalves ? isBesideLine(face) : !IsPlain(face)) {
+        return findAfterStep(face);
+    }
+    if (!isInHalves) {
+        return makePlainFaceMask(size);
     }
     LimitMask mask;
     if (isHalf) {
@@ -677,7 +682,7 @@ LimitMask FaceLimitMaskFinder::Find(Index face) const {
 }
 
 // The F-face is a level of its own here: it has no sector corners and no irregular ones, a diagonal that
-// is less sharp, and flags from quads.
+// is less sharp, flags from quads, and a place beside a line.
 LimitMask FaceLimitMaskFinder::findAfterStep(Index face) const {
     int const size = _level.GetFaceSize(face);
     Index const first = _level.faceFirstCorner[face];
@@ -706,6 +711,22 @@ LimitMask FaceLimitMaskFinder::findAfterStep(Index face) const {
                 child.quadCorners.push_back({quad.corner - first, flags});
             }
         }
+    }
+    for (LineRowCorner const &tag : FindCornerTags(_level.lineRowCorners, first, first + size)) {
+        if (auto ofFFace = FindLineRowOfFFace(tag, size, _sdcOptions);
+            ofFFace && child.numHexagonalSteps < kNumLineSteps) {
+            ofFFace->corner = tag.corner - first;
+            child.lineRowCorners.push_back(*ofFFace);
+        }
+    }
+    if (_level.IsHalfFace(face)) {
+        child.numSharpBoundariesB = 1;
+        child.halfFaces.Assign(std::vector<Index>{0});
+        child.faceEdges.Resize(std::size_t(size));
+        std::iota(child.faceEdges.data(), child.faceEdges.data() + size, 0);
+        child.edgeFaces.Resize(std::size_t(size));
+        std::fill_n(child.edgeFaces.data(), size, IndexPair{0, kFreeBoundary});
+        child.edgeFaces[kHalfFaceLongEdge][1] = kSharpBoundaryB;
     }
     return stepBack(FaceLimitMaskFinder(child, _sdcOptions, _schemeOptions).Find(0), face);
 }

@@ -92,7 +92,12 @@ private:
         Far::Index const first = _level.faceFirstCorner[face];
         Far::Index const end = _level.faceFirstCorner[face + 1];
         return end - first == HexIndexing::kNumEFaceCorners &&
-               !FindCornerTags(_level.quadCorners, first, end).empty();
+               (!FindCornerTags(_level.quadCorners, first, end).empty() || isBesideLine(face));
+    }
+    bool isBesideLine(Far::Index face) const {
+        return !FindCornerTags(_level.lineRowCorners, _level.faceFirstCorner[face],
+                               _level.faceFirstCorner[face + 1])
+                    .empty();
     }
     LimitMask findAfterStep(Far::Index face) const;
     LimitMask stepBack(LimitMask mask, Far::Index face) const;

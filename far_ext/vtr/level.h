@@ -7,6 +7,7 @@
 #include "quadCorners.h"
 
 #include "far_ext/indexing.h"
+#include "far_ext/rules/lineRow.h"
 #include "far_ext/rules/mask.h"
 
 #include <opensubdiv/sdc/crease.h>
@@ -104,6 +105,18 @@ struct IrregularCorner {
     FacesAround facesAround; ///< of the irregular vertex; Others beside a quad
 };
 
+/// \brief A corner of a face beside a line that is regular there, behind a truncation.
+struct LineRowCorner {
+    Far::Index corner;
+    /// Of the least sharp of the line's edges that make it regular, less one for each step.
+    float sharpness;
+    LineFace face;
+    std::uint16_t place; ///< of the corner in the face
+
+    /// The share of the masks beside a sharp line.
+    float GetShare() const { return std::min(1.0f, sharpness); }
+};
+
 /// \brief Tags of corners, each kind ascending by corner.
 ///
 /// Each begins with its corner, and has no padding: behind the corner, equal bytes are equal tags.
@@ -111,10 +124,12 @@ struct CornerTags {
     std::vector<SectorCorner> sectorCorners; ///< of a corner by kind
     // Those with FaceMask::Smooth; empty with other masks.
     std::vector<IrregularCorner> irregularCorners; ///< one for a corner at most
+    std::vector<LineRowCorner> lineRowCorners;     ///< more than one between lines
     QuadCorners quadCorners;                       ///< one for a corner at most
 
     bool HasCornerTags() const {
-        return !sectorCorners.empty() || !irregularCorners.empty() || !quadCorners.empty();
+        return !sectorCorners.empty() || !irregularCorners.empty() || !quadCorners.empty() ||
+               !lineRowCorners.empty();
     }
     /// Calls function(tags of the kind ...) for each kind, of one thing or of several that have members of these names.
     template <typename FUNCTION, typename... THINGS>
@@ -127,6 +142,7 @@ struct CornerTags {
     static void ForEachListedKind(FUNCTION const &function, THINGS &...things) {
         function(things.sectorCorners...);
         function(things.irregularCorners...);
+        function(things.lineRowCorners...);
     }
 };
 

@@ -2,6 +2,7 @@
 #include "refinement.h"
 
 #include "irregularFeatures.h"
+#include "lineFeatures.h"
 #include "quadFeatures.h"
 #include "sharpFeatures.h"
 
@@ -42,6 +43,7 @@ void EndRefinement(TagOptions options, Refinement const &refinement, Level &chil
     }
     FindQuadCorners(options.faceMask, refinement, child);
     FindIrregularFeatures(options.faceMask, refinement, child);
+    FindLineRowCorners(options, refinement, child);
 }
 
 } // namespace OpenSubdivHex::FarExt::internal

@@ -60,6 +60,32 @@ struct TagRange {
     bool empty() const { return first == behind; }
 };
 
+// The masks beside the sharpest line at a corner, and their share: as much as it is sharper than any other line there.
+struct LineShare {
+    LineRow row = {nullptr, false, -1};
+    LineFace face = LineFace::OnLine;
+    float share = 0;
+};
+template <typename TAGS>
+LineShare findLineShare(int numSteps, TAGS const &ofCorner, int faceSize) {
+    LineRowCorner const *sharpest = nullptr;
+    float most = 0;
+    float second = 0;
+    for (LineRowCorner const &tag : ofCorner) {
+        float const share = tag.GetShare();
+        second = std::max(second, std::min(most, share));
+        if (share > most) {
+            most = share;
+            sharpest = &tag;
+        }
+    }
+    // Of other faces on the line the ends alone are known.
+    if (!sharpest || (sharpest->face == LineFace::OnLine && faceSize != kHexagon)) {
+        return {};
+    }
+    return {FindLineRow(numSteps, sharpest->face, sharpest->place), sharpest->face, most - second};
+}
+
 // Returns the words of a tag in a face that begins at a corner: an even number of them.
 template <typename TAG>
 auto getWords(TAG tag, Index firstCorner) {
@@ -79,6 +105,7 @@ struct FaceTags {
     int diagonalEnd;
     TagRange<SectorCorner> sectorCorners;
     TagRange<IrregularCorner> irregularCorners;
+    TagRange<LineRowCorner> lineRowCorners;
     std::array<QuadFlags, kHexagon> quadFlags; // by corner; none of larger faces have any
 
     auto GetQuadWords() const {
@@ -214,65 +241,37 @@ void RefinementRules::makeRuledVertices(bool hasIrregular) {
     addIrregularBefore(_level.numVertices);
 }
 
-// Where the paths of all corners of a vertex tell its weights, these have the share that its sharpness leaves.
+// Where the tags of all corners of a vertex tell the weights of its F-vertices, these have the least share of the
+// corners; with paths, all have that which the vertex's sharpness leaves.
 void RefinementRules::makeVertexWeights() {
-    if (_level.quadCorners.empty() || _level.numVertices == 0) {
+    if ((_level.quadCorners.empty() && _level.lineRowCorners.empty()) || _level.numVertices == 0) {
         return;
     }
     struct OfCorner {
         float weight = -1; // with so few digits it is exact
         float share = 0;
     };
-    auto const find = [this](QuadFlags flags) -> OfCorner {
-        QuadRow const row = FindQuadRow(_level.numHexagonalSteps, flags);
-        return {float(row.vertexWeight), flags.GetShare()};
-    };
-    // In the constant levels few vertices have such weights, and have rules of their own.
-    bool const areFew = _level.numHexagonalSteps >= kNumStepsToConstantMasks;
-    std::vector<Index> few;
-    Buffer<OfCorner> ofCorners;
-    if (areFew) {
-        for (QuadCorner const &quad : _level.quadCorners) {
-            few.push_back(_level.faceVerts[quad.corner]);
-        }
-        SortUnique(few);
-    } else {
-        ofCorners.Resize(std::size_t(_level.numCorners));
-        ParallelFor(_level.numCorners, [&](Index corner) {
-            QuadFlags const flags = _level.quadCorners.GetFlags(corner);
-            ofCorners[std::size_t(corner)] = flags.HasAny() ? find(flags) : OfCorner();
-        });
-    }
     VertexVertexMask const plain = GetPlainVertexMask(kFVertexFaces);
     _vertexWeights.assign(1 + kFVertexFaces, plain.faceWeight);
     _vertexWeights[0] = plain.vertexWeight;
-    auto const findOf = [&](Index corner) {
-        if (!areFew) {
-            return ofCorners[std::size_t(corner)];
-        }
-        QuadFlags const flags = _level.quadCorners.GetFlags(corner);
-        return flags.HasAny() ? find(flags) : OfCorner();
-    };
     std::map<std::vector<double>, int> positions;
     std::vector<double> weights;
     std::vector<RuledVertex> ruled;
     std::vector<int> positionsOfRuled;
-    Index const count = areFew ? Index(few.size()) : _level.numVertices;
-    for (Index i = 0; i < count; ++i) {
-        Index const vert = areFew ? few[std::size_t(i)] : i;
+    auto const setWeights = [&](Index vert, float smoothShare, auto const &findOf) {
         weights.assign(1, 1.0);
-        double share = 0; // all corners have the same
+        double share = smoothShare;
         for (Index k = _level.vertFirstFace[vert]; k < _level.vertFirstFace[vert + 1]; ++k) {
             OfCorner const ofCorner = findOf(_level.GetVertexCorner(k));
-            share = ofCorner.weight < 0 ? 0 : double(ofCorner.share);
+            share = ofCorner.weight < 0 ? 0 : std::min(share, double(ofCorner.share));
             if (share == 0) {
                 break;
             }
             weights.push_back(double(ofCorner.weight));
             weights[0] -= weights.back();
         }
-        if (share == 0) {
-            continue;
+        if (share == 0 || weights.size() == 1) {
+            return;
         }
         VertexRule rule = {0, 1, {vert}, {weights[0]}, nullptr};
         if (share < 1) {
@@ -295,10 +294,57 @@ void RefinementRules::makeVertexWeights() {
             ruled.push_back({vert, rule});
             positionsOfRuled.push_back(found->second);
         } else {
-            _weightsOfVerts.resize(std::size_t(vert), kPlain);
-            _weightsOfVerts.push_back(found->second);
+            _weightsOfVerts.resize(std::max(_weightsOfVerts.size(), std::size_t(vert) + 1), kPlain);
+            _weightsOfVerts[std::size_t(vert)] = found->second;
+        }
+    };
+
+    auto const findOfQuad = [this](Index corner) -> OfCorner {
+        QuadFlags const flags = _level.quadCorners.GetFlags(corner);
+        if (!flags.HasAny()) {
+            return {};
+        }
+        QuadRow const row = FindQuadRow(_level.numHexagonalSteps, flags);
+        return {float(row.vertexWeight), flags.GetShare()};
+    };
+    auto const listVertices = [this](auto const &tags) {
+        std::vector<Index> verts;
+        for (auto const &tag : tags) {
+            verts.push_back(_level.faceVerts[tag.corner]);
+        }
+        SortUnique(verts);
+        return verts;
+    };
+    // In the constant levels few vertices have such weights, and have rules of their own.
+    if (_level.numHexagonalSteps >= kNumStepsToConstantMasks) {
+        for (Index const vert : listVertices(_level.quadCorners)) {
+            setWeights(vert, 1, findOfQuad);
+        }
+    } else if (!_level.quadCorners.empty()) {
+        Buffer<OfCorner> ofCorners;
+        ofCorners.Resize(std::size_t(_level.numCorners));
+        ParallelFor(_level.numCorners,
+                    [&](Index corner) { ofCorners[std::size_t(corner)] = findOfQuad(corner); });
+        for (Index vert = 0; vert < _level.numVertices; ++vert) {
+            setWeights(vert, 1, [&](Index corner) { return ofCorners[std::size_t(corner)]; });
         }
     }
+    for (Index const vert : listVertices(_level.lineRowCorners)) {
+        SharpVertex const *const sharp = _level.FindSharpVertex(vert);
+        bool const isInside = _level.GetNumVertexFaces(vert) == kFVertexFaces;
+        setWeights(vert,
+                   !isInside ? 0
+                   : sharp   ? float(sharp->smoothShare)
+                             : 1,
+                   [&](Index corner) {
+                       LineShare const line =
+                           findLineShare(_level.numHexagonalSteps,
+                                         FindCornerTags(_level.lineRowCorners, corner, corner + 1),
+                                         _level.GetFaceSize(_level.FindFaceOfCorner(corner)));
+                       return OfCorner{float(line.row.vertexWeight), line.share};
+                   });
+    }
+
     for (std::size_t i = 0; i < ruled.size(); ++i) {
         VertexRule &rule = ruled[i].rule;
         rule.faceWeights = _vertexWeights.data() + positionsOfRuled[i] + 1;
@@ -375,7 +421,7 @@ private:
     Index findNextFace(FaceTags const &read);
     void addRule(FaceTags const &tags);
     void addRow(std::vector<double> const &row);
-    static void addMask(double const (&mask)[kHexagon], int corner, bool isBackwards, double share,
+    static void addMask(double const *mask, int corner, bool isBackwards, double share,
                         std::vector<double> &row);
     void addIrregularWeights(IrregularCorner const &irregular, int corner,
                              std::vector<double> &row);
@@ -486,10 +532,16 @@ void RefinementRules::DenseRuleMaker::addRow(std::vector<double> const &row) {
 bool RefinementRules::DenseRuleMaker::hasOwnRows(FaceTags const &tags) const {
     return tags.isHalf || tags.diagonal > 0 || !tags.sectorCorners.empty() ||
            !tags.irregularCorners.empty() ||
-           (tags.size == kHexagon &&
-            std::any_of(tags.quadFlags.begin(), tags.quadFlags.end(), [this](QuadFlags flags) {
-                return flags.GetShare() > 0 && findQuadRow(flags).mask != nullptr;
-            }));
+           (tags.size == kHexagon && std::any_of(tags.quadFlags.begin(), tags.quadFlags.end(),
+                                                 [this](QuadFlags flags) {
+                                                     return flags.GetShare() > 0 &&
+                                                            findQuadRow(flags).mask != nullptr;
+                                                 })) ||
+           std::any_of(tags.lineRowCorners.begin(), tags.lineRowCorners.end(),
+                       [this](LineRowCorner const &tag) {
+                           return FindLineRow(_level.numHexagonalSteps, tag.face, tag.place).mask !=
+                                  nullptr;
+                       });
 }
 
 // Corners of a face with nothing of their own have the rows of its circulant rule.
@@ -499,6 +551,7 @@ void RefinementRules::DenseRuleMaker::addRule(FaceTags const &tags) {
     double const sharp = tags.isHalf ? 1 : tags.diagonal;
     SectorCorner const *sector = tags.sectorCorners.begin();
     IrregularCorner const *irregular = tags.irregularCorners.begin();
+    LineRowCorner const *line = tags.lineRowCorners.begin();
     for (int i = 0; i < size; ++i) {
         Index const corner = tags.firstCorner + i;
         double towards = 0;
@@ -518,9 +571,19 @@ void RefinementRules::DenseRuleMaker::addRule(FaceTags const &tags) {
         QuadRow const byPath =
             flags.HasAny() ? findQuadRow(flags) : QuadRow{nullptr, false, -1, -1};
         float const ofPath = byPath.mask ? flags.GetShare() : 0;
+        LineRowCorner const *const lines = line;
+        while (line != tags.lineRowCorners.end() && line->corner == corner) {
+            ++line;
+        }
+        LineShare besideLine =
+            findLineShare(_level.numHexagonalSteps, TagRange<LineRowCorner>{lines, line}, size);
+        if (!besideLine.row.mask) {
+            besideLine.share = 0;
+        }
         std::size_t const circulantRow =
             _rules._circulants[std::size_t(size)] + std::size_t(size - i);
-        if (sharp == 0 && towards == 0 && !hasOneFace && !ofIrregular && ofPath == 0) {
+        if (sharp == 0 && towards == 0 && !hasOneFace && !ofIrregular && ofPath == 0 &&
+            besideLine.share == 0) {
             _rules._rows.push_back(circulantRow);
             continue;
         }
@@ -555,6 +618,15 @@ void RefinementRules::DenseRuleMaker::addRule(FaceTags const &tags) {
             if (hasOneFace) {
                 addOneFaceHalf({sectors, sector}, half, int(place), row);
             }
+            if (besideLine.share > 0 && besideLine.face == LineFace::Half) {
+                // In the place of the half face's own mask.
+                double const share = std::min(sharp, double(besideLine.share));
+                for (int j = 0; j < kTrapezoid; ++j) {
+                    int const turns = besideLine.row.isBackwards ? kTrapezoid - j : j;
+                    std::size_t const to = (place + std::size_t(turns)) % kTrapezoid;
+                    row[std::size_t(half[to])] += share * (besideLine.row.mask[j] - weights[to]);
+                }
+            }
         } else if (hasOneFace) {
             addOneFace({sectors, sector}, i, row);
         }
@@ -563,6 +635,11 @@ void RefinementRules::DenseRuleMaker::addRule(FaceTags const &tags) {
         }
         if (ofPath > 0) {
             addMask(*byPath.mask, i, byPath.isBackwards, ofPath, row);
+        }
+        if (besideLine.share > 0 && besideLine.face != LineFace::Half) {
+            // Where another line crosses the face, as much as it is sharper than that.
+            addMask(besideLine.row.mask, i, besideLine.row.isBackwards,
+                    std::max(0.0, double(besideLine.share) - sharp), row);
         }
         addRow(row);
     }
@@ -617,9 +694,8 @@ void RefinementRules::DenseRuleMaker::addOneFaceHalf(Sectors sectors, std::vecto
 }
 
 // Mixes a share of a hexagon's mask into a row of its corner, forward from there or backward.
-void RefinementRules::DenseRuleMaker::addMask(double const (&mask)[kHexagon], int corner,
-                                              bool isBackwards, double share,
-                                              std::vector<double> &row) {
+void RefinementRules::DenseRuleMaker::addMask(double const *mask, int corner, bool isBackwards,
+                                              double share, std::vector<double> &row) {
     for (int j = 0; j < kHexagon; ++j) {
         double &weight = row[std::size_t((corner + (isBackwards ? kHexagon - j : j)) % kHexagon)];
         weight += share * (mask[j] - weight);

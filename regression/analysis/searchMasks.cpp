@@ -6,6 +6,7 @@
 // A search finds a local optimum.  Where the library's table is another one, the weights are far apart, and the
 // measures tell how good each is.
 #include "leastSquares.h"
+#include "lineMaskSearch.h"
 #include "maskSearch.h"
 #include "quadMaskSearch.h"
 #include "searchPatchConstants.h"
@@ -28,10 +29,12 @@ struct Effort {
     int maxQuadSteps;
     int maskLevel;
     int maxMaskSteps;
+    int lineLevel;
+    int maxLineSteps;
     int maxPatchRounds;
 };
-constexpr Effort kWhole = {6, 60, 5, 30, 8};
-constexpr Effort kQuick = {5, 2, 3, 1, 0};
+constexpr Effort kWhole = {6, 60, 5, 30, 5, 40, 8};
+constexpr Effort kQuick = {5, 2, 3, 1, 4, 1, 0};
 
 using Weights = Eigen::VectorXd;
 using Entries = std::vector<std::pair<std::string, double>>;
@@ -102,6 +105,21 @@ void searchMasks(SearchedMasks const &searched, Effort const &effort) {
          [&](Weights const &weights) { PrintMasks(searched, weights); }});
 }
 
+void searchLines(Effort const &effort) {
+    LineMaskSearch const search(effort.lineLevel);
+    run({search.GetShipped(), search.GetStart(), effort.maxLineSteps,
+         [&](Weights const &weights) { return search.Measure(weights); },
+         [&](Weights const &weights) { return search.Round(weights); },
+         [&](Weights const &weights) {
+             Entries entries;
+             for (LineMaskSearch::Entry const &entry : search.Judge(weights)) {
+                 entries.emplace_back(entry.name, entry.unevenness);
+             }
+             return entries;
+         },
+         [&](Weights const &weights) { search.Print(weights); }});
+}
+
 struct Table {
     std::string name;
     std::string where;
@@ -131,6 +149,8 @@ std::vector<Table> makeTables() {
         add("triangles-" + std::to_string(numFaces), "around vertices with so many triangles",
             {numFaces, FacesAround::Triangles});
     }
+    tables.push_back(
+        {"lines", "far_ext/rules/lineRows.inl: beside lines of truncated meshes", searchLines});
     for (int steps = 0; steps <= 2; ++steps) {
         tables.push_back(
             {"patches-" + std::to_string(steps),

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "irregularReference.h"
+#include "lineReference.h"
 #include "taggedRules.h"
 
 #include <algorithm>
@@ -291,14 +292,15 @@ public:
             auto const pull = pulls.find({origin.face, origin.place});
             double const towards = pull != pulls.end() ? pull->second : 0;
             Side const corner = {origin.face, origin.place};
-            _result.row(Eigen::Index(v)) =
-                mixByPath(corner, cornerPoint(corner, towards, _values.row(origin.vertex)));
+            _result.row(Eigen::Index(v)) = mixBesideLine(
+                corner,
+                mixByPath(corner, cornerPoint(corner, towards, _values.row(origin.vertex))));
         }
         for (std::size_t v = 0; v < _mesh.vertices.size(); ++v) {
             if (_child.vVertices[v] >= 0) {
-                _result.row(_child.vVertices[v]) = _isVarying
-                                                       ? Point(_values.row(Eigen::Index(v)))
-                                                       : mixByPaths(int(v), movedVertex(int(v)));
+                _result.row(_child.vVertices[v]) =
+                    _isVarying ? Point(_values.row(Eigen::Index(v)))
+                               : mixBesideLines(int(v), mixByPaths(int(v), movedVertex(int(v))));
             }
         }
         return std::move(_result);
@@ -342,7 +344,8 @@ private:
         }
         Edge const &line = _mesh.edges[face.edges[0]];
         if (line.sides.size() == 1) {
-            return halfPoint(face, corner.place) + fromOneFace(face, corner);
+            return halfPoint(face, corner.place) + fromOneFace(face, corner) +
+                   fromLine(face, corner, 1);
         }
         auto const [vertices, place] = wholeOf(corner);
         std::vector<Point> const whole = pointsOf(vertices);
@@ -352,7 +355,8 @@ private:
                                     : maskPoint(whole, place);
         double const sharp = _isVarying ? 0 : std::min(1.0, double(line.sharpness));
         Point const plain = sharp * halfPoint(face, corner.place) + towards * vertex +
-                            (1 - sharp - towards) * smooth + fromOneFace(face, corner);
+                            (1 - sharp - towards) * smooth + fromOneFace(face, corner) +
+                            fromLine(face, corner, sharp);
         if (!hasIrregularRules() || !isHexagon) {
             return plain;
         }
@@ -442,6 +446,97 @@ private:
         double const near = found->second.before;
         double const far = std::max(0.0, found->second.far - near); // the near end goes first
         return near * beside + far * farFrom - (near + far) * halfPoint(face, corner.place);
+    }
+
+    /// The hexagon that a corner is in, with one of those on the line where it has halves; and the corner's place there.
+    std::pair<std::vector<Side>, int> hexagonOf(Side corner) const {
+        Face const &face = _mesh.faces[corner.face];
+        std::vector<Side> corners;
+        if (!face.isHalf && face.vertices.size() == 6) {
+            for (int i = 0; i < 6; ++i) {
+                corners.push_back({corner.face, i});
+            }
+            return {corners, corner.place};
+        }
+        Edge const &line = _mesh.edges[face.edges[0]];
+        if (!face.isHalf || line.sides.size() == 1 || wholeOf(corner).first.size() != 6) {
+            return {};
+        }
+        // The edges from these corners are those of the hexagon.
+        int const partner = line.sides[line.sides[0].face == corner.face ? 1 : 0].face;
+        for (int const half : {partner, corner.face}) {
+            int const size = int(_mesh.faces[half].vertices.size());
+            for (int i = 1; i < size; ++i) {
+                corners.push_back({half, i});
+            }
+        }
+        return {corners, wholeOf(corner).second};
+    }
+
+    std::optional<LineRule> lineRuleOf(Side corner) const {
+        if (!hasIrregularRules()) {
+            return {};
+        }
+        auto const [hexagon, place] = hexagonOf(corner);
+        return FindLineRule(_mesh, corner, hexagon, place);
+    }
+
+    /// A sum of the points around a face, from one of them on.
+    static Point sumFrom(std::vector<Point> const &points, int i, LineRule const &rule) {
+        Point sum = Point::Zero(points[0].size());
+        int const size = int(points.size());
+        for (int j = 0; j < size; ++j) {
+            int const place = (i + (rule.isMirrored ? size - j : j)) % size;
+            sum += rule.weights[std::size_t(j)] * points[std::size_t(place)];
+        }
+        return sum;
+    }
+
+    /// What the row of half a hexagon changes, of a line that is as sharp.
+    Point fromLine(Face const &face, Side corner, double sharp) const {
+        std::optional<LineRule> const rule = lineRuleOf(corner);
+        if (!rule || !rule->isOfHalf || rule->weights.empty()) {
+            return Point::Zero(_values.cols());
+        }
+        Point const point = sumFrom(pointsOf(face.vertices), corner.place, *rule);
+        return std::min(sharp, rule->share) * (point - halfPoint(face, corner.place));
+    }
+
+    /// A new point of a hexagon, whose other rules have made \p other.
+    Point mixBesideLine(Side corner, Point const &other) const {
+        std::optional<LineRule> const rule = lineRuleOf(corner);
+        if (!rule || rule->isOfHalf || rule->weights.empty()) {
+            return other;
+        }
+        auto const [whole, place] = wholeOf(corner);
+        double const crossing = std::min(1.0, lineSharpness(_mesh, _mesh.faces[corner.face]));
+        double const share = std::max(0.0, rule->share - crossing);
+        return share * sumFrom(pointsOf(whole), place, *rule) + (1 - share) * other;
+    }
+
+    /// A moved vertex, likewise: where three faces are around it and all tell the weights of their new points.
+    Point mixBesideLines(int v, Point const &other) const {
+        double share = 0;
+        for (RuleShare const &ofRule : ruleShares(_mesh, v)) {
+            bool const isSmooth =
+                ofRule.rule == TaggedRule::Smooth || ofRule.rule == TaggedRule::Dart;
+            share += isSmooth ? ofRule.weight : 0;
+        }
+        Point const old = _values.row(v);
+        Point moved = old;
+        std::set<int> around;
+        for (Side corner : _mesh.vertices[std::size_t(v)].corners) {
+            std::optional<LineRule> const rule = lineRuleOf(corner);
+            if (!rule || !rule->weightOfPoint) {
+                return other;
+            }
+            int const point = _child.fVertices[corner.face][corner.place];
+            if (around.insert(point).second) {
+                moved += *rule->weightOfPoint * (_result.row(point) - old);
+            }
+            share = std::min(share, rule->share);
+        }
+        return around.size() == 3 ? Point(share * moved + (1 - share) * other) : other;
     }
 
     /// At a corner, those of the hexagon where its face is half of one.

@@ -42,6 +42,8 @@ struct TaggedMesh {
         bool isFree = false;     ///< a boundary that follows the paper's rule
         int line = -1; ///< the same for all boundaries of a base edge that came apart; else -1
         float sharpness = 0; ///< infinite for boundaries that are not free
+        /// Behind a truncation, of a line: how sharp it is as far as long and short pieces follow one another.
+        float regularLine = 0;
     };
     struct Vertex {
         float sharpness = 0;

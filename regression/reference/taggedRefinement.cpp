@@ -71,6 +71,9 @@ private:
         });
     }
 
+    float regularChild(Edge const &edge) const {
+        return isHexagonal() ? decremented(edge.regularLine) : 0;
+    }
     bool isHole(Side side) const { return _parent.faces[side.face].holes[side.place]; }
 
     int addFace(std::vector<int> vertices, bool isHalf, std::vector<bool> holes,
@@ -224,6 +227,7 @@ void Refinement::makeFFaces() {
             child.isLong = true;
             child.line = edge.line;
             child.sharpness = decremented(edge.sharpness);
+            child.regularLine = regularChild(edge);
             _child.edges.push_back(child);
         }
     }
@@ -281,6 +285,7 @@ void Refinement::makeEFaces() {
         if (edge.isFree) {
             child.sharpness = 0;
         }
+        child.regularLine = regularChild(edge);
         _child.edges.push_back(child);
     }
 }
@@ -373,6 +378,12 @@ void Refinement::joinSides() {
             Edge const &line = _parent.edges[_parent.faces[origin.face].edges[0]];
             edge.line = line.line;
             edge.sharpness = childSharpness(_parent, start.vertex, line.sharpness);
+            for (SharpEdge const &other : sharpEdges(_parent, start.vertex)) {
+                if (!other.isLong) {
+                    edge.regularLine =
+                        std::min(regularChild(line), regularChild(_parent.edges[other.edge]));
+                }
+            }
         } else if (edgeSides.size() == 1) {
             edge.isFree = isHexagonal() || _parent.freeBoundaries;
             edge.sharpness = edge.isFree ? 0 : kInfiniteSharpness;

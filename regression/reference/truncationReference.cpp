@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "lineReference.h"
 #include "taggedRules.h"
 
 #include <algorithm>
@@ -128,6 +129,7 @@ public:
             _child.edges.push_back(edge);
         }
         connect(_child);
+        BeginRegularLines(_child);
         return std::move(_child);
     }
 
