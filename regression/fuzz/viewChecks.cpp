@@ -56,8 +56,9 @@ void forLeaves(CellTree const &tree, int cell, std::vector<Coords> const &corner
         return;
     }
     std::size_t const numCorners = corners.size();
-    // The centre of a half cell is in the middle of its long edge, that of the hexagon.
-    std::size_t const numAroundCenter = tree.IsWhole(cell) ? numCorners : 2;
+    // The centre of a half cell, and of half a polygon, is in the middle of its long edge.
+    bool const hasLongEdge = !tree.IsWhole(cell) || tree.GetFaceShape().isHalf;
+    std::size_t const numAroundCenter = hasLongEdge ? 2 : numCorners;
     Coords center = {};
     for (std::size_t i = 0; i < numAroundCenter; ++i) {
         center[0] += corners[i][0] / double(numAroundCenter);
@@ -69,7 +70,7 @@ void forLeaves(CellTree const &tree, int cell, std::vector<Coords> const &corner
     }
     int child = tree.GetFirstChild(cell);
     forLeaves(tree, child, inner, function);
-    for (std::size_t i = tree.IsWhole(cell) ? 0 : 1; i < numCorners; ++i) {
+    for (std::size_t i = hasLongEdge ? 1 : 0; i < numCorners; ++i) {
         std::size_t const next = (i + 1) % numCorners;
         forLeaves(tree, ++child, {corners[i], corners[next], inner[next], inner[i]}, function);
     }
