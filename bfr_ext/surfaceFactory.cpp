@@ -161,7 +161,7 @@ CallStatus SurfaceFactory::checkIsFace(Index face) const {
     return CallStatus(StatusCode::InvalidArgument, ComponentType::Face, face,
                       isHole ? name + " is a hole, which has no surface"
                              : name + " is not one of the " + std::to_string(GetNumFaces()) +
-                                   " base faces of level " + std::to_string(_level.GetDepth()));
+                                   " faces of level " + std::to_string(_level.GetDepth()));
 }
 
 CallStatus SurfaceFactory::CheckFace(Index face) const {

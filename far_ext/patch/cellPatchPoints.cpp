@@ -29,9 +29,9 @@ std::vector<CornerWeights> findPatchCorners(CellPatch const &cell) {
     FaceCells const cells = MakeFaceCells({numCorners, cell.kind != CellKind::Whole});
     for (int half = 0; half < (cells.IsCut() ? 2 : 1); ++half) {
         int const size = cells.GetNumCorners(half);
-        std::vector<int> ofCell;
+        std::vector<int> ofCell(static_cast<std::size_t>(size));
         for (int i = 0; i < size; ++i) {
-            ofCell.push_back(cells.GetLocal(half, i));
+            ofCell[std::size_t(i)] = cells.GetLocal(half, i);
         }
         auto const at = [&](int i) { return ofCell[std::size_t((i + size) % size)]; };
         if (!cells.HasKites(half)) {

@@ -925,9 +925,10 @@ LimitRow PatchBuilder::LevelBuilder::getRow(Index number, LimitStencils::KeptRow
         }
         Index const cFace = _toChild.GetEdgeChildFace(row.index);
         Far::ConstIndexArray const verts = child.GetFaceVertices(cFace);
-        std::vector<Index> ofHalf;
+        std::vector<Index> ofHalf(4);
         for (int i = 0; i < 4; ++i) {
-            ofHalf.push_back(verts[HasHalves(verts.size()) ? kHexagonHalves[row.side][i] : i]);
+            ofHalf[std::size_t(i)] =
+                verts[HasHalves(verts.size()) ? kHexagonHalves[row.side][i] : i];
         }
         addAcross(ofHalf, 2, true, kept);
         break;

@@ -47,11 +47,11 @@ VaryingPoints::VaryingPoints(TopologyRefiner const &refiner, int channel, PatchC
         std::map<Index, Index> pointOfEdge;
         for (PatchCell const &cell : cells.GetCells(depth)) {
             FaceCells const faceCells = FindFaceCells(level, cell.face);
-            std::vector<Index> verts;
-            for (int i = 0; i < faceCells.GetNumCorners(cell.half); ++i) {
-                verts.push_back(level.GetFaceVertices(cell.face)[faceCells.GetLocal(cell.half, i)]);
+            auto const size = std::size_t(faceCells.GetNumCorners(cell.half));
+            std::vector<Index> verts(size);
+            for (std::size_t i = 0; i < size; ++i) {
+                verts[i] = level.GetFaceVertices(cell.face)[faceCells.GetLocal(cell.half, int(i))];
             }
-            std::size_t const size = verts.size();
             if (!faceCells.HasKites(cell.half)) {
                 for (Index const vert : verts) {
                     _patchPoints.push_back(getVertexPoint(vert));

@@ -37,7 +37,7 @@ long double fallingSmoothWeight(int j, int n) {
     return ((j == 0 ? n : 0) + sum) / (6.0L * n);
 }
 
-// The sides of the largest polygon where less the weights of ghosts none of Smooth is negative.
+// Sides of the largest polygon whose half has no negative weight by the mask of Smooth.
 constexpr int kMaxHalvedBySmooth = 10;
 
 long double varyingWeight(int j, int n) { return ((j == 0 ? n : 0) + 1) / (2.0L * n); }
@@ -71,12 +71,12 @@ void ComputeFaceVertexMask(FaceMask mask, Interpolation interpolation, int n, do
 void ComputeHalfFaceVertexMask(FaceMask mask, Interpolation interpolation, int n, double *weights) {
     int const half = n - 1; // sides of the polygon from V to W
     int const size = 2 * half;
-    std::vector<long double> ofDistance;
+    std::vector<long double> ofDistance(static_cast<std::size_t>(size));
     bool const isFalling = mask == FaceMask::Smooth && interpolation == Interpolation::Vertex &&
                            size > kMaxHalvedBySmooth;
     for (int j = 0; j < size; ++j) {
-        ofDistance.push_back(isFalling ? fallingSmoothWeight(j, size)
-                                       : faceWeight(mask, interpolation, j, size));
+        ofDistance[std::size_t(j)] =
+            isFalling ? fallingSmoothWeight(j, size) : faceWeight(mask, interpolation, j, size);
     }
     // Between places in the polygon, that of V being 0, of W half, and then those of the Q.
     auto const weightAt = [&](int from, int to) {
