@@ -112,6 +112,9 @@ std::vector<VertexMark> markFeatures(Level const &level) {
     for (SectorCorner const &sector : level.sectorCorners) {
         markFace(level.FindFaceOfCorner(sector.corner));
     }
+    for (LineRowCorner const &besideLine : level.lineRowCorners) {
+        markFace(level.FindFaceOfCorner(besideLine.corner));
+    }
     auto const forEachSharp = [](Buffer<float> const &tags, auto function) {
         for (std::size_t i = 0; i < tags.size(); ++i) {
             if (Crease::IsSharp(tags[i])) {

@@ -10,7 +10,7 @@ namespace OpenSubdivHex::FarExt::internal {
 namespace {
 
 constexpr int kHexagon = 6;
-constexpr int kNumLineFaces = 4;
+constexpr int kNumLineFaces = 5;
 constexpr int kNone = -1;
 
 struct TableRow {

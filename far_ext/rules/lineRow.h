@@ -9,15 +9,17 @@ namespace OpenSubdivHex::FarExt::internal {
 /// The hexagonal steps behind a truncation that have masks of their own beside lines.
 inline constexpr int kNumLineSteps = 3;
 
-/// \brief Where a face lies beside a regular line, whose edges are A and B in turn: two rows of hexagons.
+/// \brief Where a face lies beside a line whose edges are A and B in turn.  Where it is regular, there are two rows of
+/// hexagons.
 ///
 /// A place of such a face is one of its corners, counted counter-clockwise from the one where the edge next to the
 /// line begins.
 enum class LineFace : std::uint16_t {
-    OnLine, ///< on an A edge, which begins at place 0
-    Half, ///< half a polygon, V, W ..., whose long edge is the B edge; the two ends of that are both place 0
-    Behind, ///< across the edge from Q to P of half a hexagon V, W, Q, P
-    Beyond  ///< across the far edge, from place 3 to 4, of a hexagon OnLine
+    OnLine,     ///< a hexagon on an A edge, which begins at place 0, between two half hexagons
+    Half,       ///< half a polygon V, W ... with the B edge V-W, whose two ends are both place 0
+    Behind,     ///< a hexagon across the edge from Q to P of half a hexagon V, W, Q, P
+    Beyond,     ///< a hexagon across the far edge, from place 3 to 4, of one on an A edge
+    OnOtherLine ///< any other face on an A edge: it has no masks, but faces that it makes have
 };
 
 /// \brief The masks of a corner beside a regular line.

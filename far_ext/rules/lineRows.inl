@@ -1,5 +1,5 @@
-// In 4096ths, for each number of steps behind the truncation: the face, a place on its right, the weight of that corner's
-// F-vertex in V', and the row of the F-vertex from the corner on; none of faces beyond.
+// In 4096ths, for each number of steps behind the truncation: the face, a place on its right, the weight of that
+// corner's F-vertex in V', and the row of the F-vertex from the corner on; none of faces beyond.
 // clang-format off
 {0, kOnLine, 1, kNone, {1504, 1238, 0, 0, 824, 530}},
 {0, kOnLine, 2, 1270, {2257, 363, 138, 522, 142, 674}},

@@ -17,6 +17,22 @@ constexpr int kHexagon = HexIndexing::kNumEFaceCorners;
 constexpr int kTrapezoid = HexIndexing::kNumBoundaryEFaceCorners;
 constexpr int kEndOfHalf = 0; // both of them
 
+// Whether across the edge that begins at a corner there is half a hexagon.
+bool isBesideHalfHexagon(Level const &level, Index corner) {
+    if (level.IsBoundary(level.faceEdges[corner])) {
+        return false;
+    }
+    FaceCorner const across = level.GetCornerAcross(corner);
+    int const size = level.GetFaceSize(across.face);
+    if (level.IsHalfFace(across.face)) {
+        return size == kTrapezoid;
+    }
+    int const local = across.corner - level.faceFirstCorner[across.face];
+    return level.HasFaceHalves(across.face) &&
+           GetHalfSize(level.GetHalfOfFaceEdge(across.face, local), size,
+                       level.GetDiagonalEnd(across.face)) == kTrapezoid;
+}
+
 class LineRowFinder {
 public:
     LineRowFinder(TagOptions options, Refinement const &refinement, Level &level)
@@ -124,11 +140,13 @@ void LineRowFinder::beginOnLine(Index edge) {
         Index const face = _level.edgeFaces[edge][side];
         int const local = _level.edgeFaceLocals[edge][side];
         if (_level.GetFaceSize(face) != kHexagon) {
-            add(getCorner(face, local), LineFace::OnLine, 0, sharpness);
-            add(getCorner(face, local + 1), LineFace::OnLine, 1, sharpness);
+            add(getCorner(face, local), LineFace::OnOtherLine, 0, sharpness);
+            add(getCorner(face, local + 1), LineFace::OnOtherLine, 1, sharpness);
             continue;
         }
-        addHexagon(face, local, LineFace::OnLine, sharpness);
+        bool const isRegular = isBesideHalfHexagon(_level, getCorner(face, local + 1)) &&
+                               isBesideHalfHexagon(_level, getCorner(face, local + kHexagon - 1));
+        addHexagon(face, local, isRegular ? LineFace::OnLine : LineFace::OnOtherLine, sharpness);
         Index const far = getCorner(face, local + kHexagon / 2);
         if (!_level.IsBoundary(_level.faceEdges[far])) {
             FaceCorner const beyond = _level.GetCornerAcross(far);
@@ -223,7 +241,7 @@ void LineRowFinder::goOnFrom(Index face, LineRowCorner const &tag) {
             addHexagon(eFace, getSide(tag.corner).fFaceEdge, LineFace::Behind, sharpness);
         }
     }
-    if (tag.face != LineFace::OnLine || tag.place > 1) {
+    if ((tag.face != LineFace::OnLine && tag.face != LineFace::OnOtherLine) || tag.place > 1) {
         return;
     }
     if (tag.place == 0) {
@@ -252,7 +270,9 @@ void LineRowFinder::goOnAtEnd(Index face, LineRowCorner const &tag, float sharpn
         }
         float const least =
             std::min(sharpness, _creasing.SubdivideUniformSharpness(beside.sharpness));
-        addHexagon(eFace, isStart ? side.startFVertex : side.endVertex, LineFace::OnLine, least);
+        addHexagon(eFace, isStart ? side.startFVertex : side.endVertex,
+                   isBesideHalfHexagon(_parent, between) ? LineFace::OnLine : LineFace::OnOtherLine,
+                   least);
         // The next edge of the face makes the one beyond.
         Index const next =
             isStart ? _parent.GetPrevCorner(face, between) : _parent.GetNextCorner(face, between);
@@ -279,11 +299,11 @@ std::optional<LineRowCorner> FindLineRowOfFFace(LineRowCorner const &parent, int
                                                 Sdc::Options sdcOptions) {
     LineRowCorner result = parent;
     result.sharpness = Crease(sdcOptions).SubdivideUniformSharpness(parent.sharpness);
-    if (parent.face == LineFace::OnLine) {
+    bool const isOnLine = parent.face == LineFace::OnLine || parent.face == LineFace::OnOtherLine;
+    if (isOnLine) {
         result.face = LineFace::Behind;
     }
-    bool const isTagged =
-        parent.face == LineFace::Half || (parent.face == LineFace::OnLine && faceSize == kHexagon);
+    bool const isTagged = parent.face == LineFace::Half || (isOnLine && faceSize == kHexagon);
     return isTagged && result.sharpness > 0 ? std::optional(result) : std::nullopt;
 }
 

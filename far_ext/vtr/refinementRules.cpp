@@ -67,7 +67,7 @@ struct LineShare {
     float share = 0;
 };
 template <typename TAGS>
-LineShare findLineShare(int numSteps, TAGS const &ofCorner, int faceSize) {
+LineShare findLineShare(int numSteps, TAGS const &ofCorner) {
     LineRowCorner const *sharpest = nullptr;
     float most = 0;
     float second = 0;
@@ -79,11 +79,9 @@ LineShare findLineShare(int numSteps, TAGS const &ofCorner, int faceSize) {
             sharpest = &tag;
         }
     }
-    // Of other faces on the line the ends alone are known.
-    if (!sharpest || (sharpest->face == LineFace::OnLine && faceSize != kHexagon)) {
-        return {};
-    }
-    return {FindLineRow(numSteps, sharpest->face, sharpest->place), sharpest->face, most - second};
+    return sharpest ? LineShare{FindLineRow(numSteps, sharpest->face, sharpest->place),
+                                sharpest->face, most - second}
+                    : LineShare();
 }
 
 // Returns the words of a tag in a face that begins at a corner: an even number of them.
@@ -309,6 +307,7 @@ void RefinementRules::makeVertexWeights() {
     };
     auto const listVertices = [this](auto const &tags) {
         std::vector<Index> verts;
+        verts.reserve(tags.size());
         for (auto const &tag : tags) {
             verts.push_back(_level.faceVerts[tag.corner]);
         }
@@ -329,20 +328,16 @@ void RefinementRules::makeVertexWeights() {
             setWeights(vert, 1, [&](Index corner) { return ofCorners[std::size_t(corner)]; });
         }
     }
+    auto const findBesideLine = [this](Index corner) -> OfCorner {
+        LineShare const line = findLineShare(
+            _level.numHexagonalSteps, FindCornerTags(_level.lineRowCorners, corner, corner + 1));
+        return {float(line.row.vertexWeight), line.share};
+    };
     for (Index const vert : listVertices(_level.lineRowCorners)) {
-        SharpVertex const *const sharp = _level.FindSharpVertex(vert);
-        bool const isInside = _level.GetNumVertexFaces(vert) == kFVertexFaces;
-        setWeights(vert,
-                   !isInside ? 0
-                   : sharp   ? float(sharp->smoothShare)
-                             : 1,
-                   [&](Index corner) {
-                       LineShare const line =
-                           findLineShare(_level.numHexagonalSteps,
-                                         FindCornerTags(_level.lineRowCorners, corner, corner + 1),
-                                         _level.GetFaceSize(_level.FindFaceOfCorner(corner)));
-                       return OfCorner{float(line.row.vertexWeight), line.share};
-                   });
+        if (_level.GetNumVertexFaces(vert) == kFVertexFaces) {
+            SharpVertex const *const sharp = _level.FindSharpVertex(vert);
+            setWeights(vert, sharp ? float(sharp->smoothShare) : 1, findBesideLine);
+        }
     }
 
     for (std::size_t i = 0; i < ruled.size(); ++i) {
@@ -576,7 +571,7 @@ void RefinementRules::DenseRuleMaker::addRule(FaceTags const &tags) {
             ++line;
         }
         LineShare besideLine =
-            findLineShare(_level.numHexagonalSteps, TagRange<LineRowCorner>{lines, line}, size);
+            findLineShare(_level.numHexagonalSteps, TagRange<LineRowCorner>{lines, line});
         if (!besideLine.row.mask) {
             besideLine.share = 0;
         }

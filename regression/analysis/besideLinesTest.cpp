@@ -63,12 +63,12 @@ TEST(BesideLines, HalfDisks) {
         Rings truncated; // at most
         Rings loop;
     };
-    for (Row const &row : {Row{2, {0.19, 0.24, 0.40}, {0.045, 0.029, 0.022}},
-                           Row{3, {0.26, 0.25, 0.21}, {0.085, 0.040, 0.018}},
-                           Row{4, {0.31, 0.24, 0.21}, {0.079, 0.037, 0.032}},
-                           Row{5, {0.41, 0.29, 0.21}, {0.113, 0.157, 0.233}},
-                           Row{6, {0.51, 0.43, 0.34}, {0.164, 0.321, 0.687}},
-                           Row{8, {0.73, 0.67, 0.57}, {0.270, 0.637, 2.225}}}) {
+    for (Row const &row : {Row{2, {0.20, 0.25, 0.42}, {0.045, 0.029, 0.022}},
+                           Row{3, {0.18, 0.18, 0.19}, {0.085, 0.040, 0.018}},
+                           Row{4, {0.30, 0.26, 0.22}, {0.079, 0.037, 0.032}},
+                           Row{5, {0.39, 0.31, 0.22}, {0.113, 0.157, 0.233}},
+                           Row{6, {0.49, 0.45, 0.35}, {0.164, 0.321, 0.687}},
+                           Row{8, {0.70, 0.69, 0.58}, {0.270, 0.637, 2.225}}}) {
         SCOPED_TRACE(row.numFaces);
         auto const measure = [&](AnyScheme const &scheme) {
             return MeasureHalfDisk(Tiling::Triangles, row.numFaces, scheme, kNumRings, kLevel);

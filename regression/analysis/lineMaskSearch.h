@@ -12,12 +12,12 @@ namespace OpenSubdivHex::Regression {
 
 /// \brief A search for the masks beside lines of truncated meshes (far_ext/rules/lineRows.inl).
 ///
-/// The control mesh is a strip of equilateral triangles in the plane, with its border on a line, lifted to a bowl and two
-/// saddles, of which second derivatives are estimated at the vertices of a refined level, in the two rows of triangles
-/// beside the border and one period along it.  Searched for are the weights with the least mean square, by area, of what
-/// these deviate by from their mean at the same distance from the border; and, as smaller parts, of what that mean
-/// deviates by from the exact ones, and of what the weights differ by from those of later levels.  Points on the line are
-/// not searched for: they follow from the line alone.
+/// The control mesh is a strip of equilateral triangles in the plane, with its border on a line, lifted to a bowl and
+/// two saddles.  Their second derivatives are estimated at the vertices of a refined level, in the two rows of
+/// triangles beside the border and one period along it.  Searched for are the weights with the least mean square, by
+/// area, of what these deviate by from their mean at the same distance from the border; and, as smaller parts, of what
+/// that mean deviates by from the exact one, and of what the weights differ by from those of later levels.  Points on
+/// the line are not searched for: they follow from the line alone.
 ///
 /// What rows, and V', leave to 1 is at least 0.
 class LineMaskSearch {

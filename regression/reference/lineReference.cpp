@@ -106,7 +106,9 @@ public:
             Edge const &edge = edgeOf(hexagon[std::size_t(i)]);
             int const at = (place - i + 6) % 6; // seen from this edge
             if (!edge.isLong) {
-                add(edge.regularLine, "on", at);
+                bool const isBetween = isBesideHalfHexagon(hexagon[std::size_t((i + 1) % 6)]) &&
+                                       isBesideHalfHexagon(hexagon[std::size_t((i + 5) % 6)]);
+                add(edge.regularLine, isBetween ? "on" : "other", at);
             }
             add(lineBefore(hexagon[std::size_t(i)]), "behind", at);
             if (at <= 1) {
@@ -128,6 +130,11 @@ private:
         }
         bool const isFirst = edge.sides[0].face == side.face && edge.sides[0].place == side.place;
         return edge.sides[isFirst ? 1 : 0];
+    }
+    bool isBesideHalfHexagon(Side side) const {
+        std::optional<Side> const other = across(side);
+        return other && _mesh.faces[other->face].isHalf &&
+               _mesh.faces[other->face].vertices.size() == 4;
     }
     /// Of the line whose half hexagon has this edge opposite to it.
     float lineBefore(Side side) const {

@@ -9,8 +9,8 @@
 
 namespace OpenSubdivHex::Regression {
 
-/// \brief How regular the line is in the pieces of it that a truncation makes: each gets the least sharpness of its own and of
-/// the next pieces, but 0 where these are not long beside a short one, or short beside a long one.
+/// \brief Says of the edges of lines, which a truncation made, how sharp the regular line is there: as the least sharp of the
+/// edge and the next ones at its ends, but not at all where one of these is as long, or short, as it.
 void BeginRegularLines(TaggedMesh &mesh);
 
 /// The row of a corner beside a line.
@@ -23,8 +23,8 @@ struct LineRule {
     double share;
 };
 
-/// \brief The rule beside the sharpest line at a corner, by what lies around it; its share is what that is sharper than all
-/// others.
+/// \brief The rule of a corner beside a line, found by what lies around it.  Between lines it is that of the sharpest, whose
+/// share is what it is sharper than all others.
 ///
 /// \param corner   of a face, or of half of it
 /// \param hexagon  where the corners of its hexagon are, if it has one, from any on; of those on a line between two
