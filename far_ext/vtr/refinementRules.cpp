@@ -307,6 +307,7 @@ void RefinementRules::makeVertexWeights() {
     };
     auto const listVertices = [this](auto const &tags) {
         std::vector<Index> verts;
+        verts.reserve(tags.size());
         for (auto const &tag : tags) {
             verts.push_back(_level.faceVerts[tag.corner]);
         }

@@ -187,8 +187,9 @@ LimitReference::Piece LimitReference::cutOut(TaggedMesh const &mesh, int vertex,
             if (copy.line >= 0) {
                 copy.line = lines.emplace(copy.line, int(lines.size())).first->second;
             }
-            signature.insert(signature.end(), {int(copy.sides.size()), copy.isLong, copy.isFree,
-                                               copy.line, bitsOf(copy.sharpness)});
+            signature.insert(signature.end(),
+                             {int(copy.sides.size()), copy.isLong, copy.isFree, copy.line,
+                              bitsOf(copy.sharpness), bitsOf(copy.regularLine)});
             part.edges.push_back(std::move(copy));
         }
     }

@@ -178,8 +178,7 @@ private:
 std::optional<LineRule> FindLineRule(TaggedMesh const &mesh, Side corner,
                                      std::vector<Side> const &hexagon, int place) {
     static std::map<Key, Row> const rows = readRows();
-    constexpr int kNumSteps = 3;
-    if (mesh.numHexagonalSteps >= kNumSteps) {
+    if (mesh.numHexagonalSteps >= kNumLineSteps) {
         return {};
     }
     std::vector<Role> roles = RoleFinder(mesh).Find(corner, hexagon, place);

@@ -9,6 +9,9 @@
 
 namespace OpenSubdivHex::Regression {
 
+/// The hexagonal steps behind a truncation that have such rules.
+inline constexpr int kNumLineSteps = 3;
+
 /// \brief Says of the edges of lines, which a truncation made, how sharp the regular line is there: as the least sharp of the
 /// edge and the next ones at its ends, but not at all where one of these is as long, or short, as it.
 void BeginRegularLines(TaggedMesh &mesh);
