@@ -11,7 +11,6 @@
 
 namespace OpenSubdivHex::BfrExt {
 
-using FarExt::SurfaceFaces;
 using FarExt::internal::Level;
 
 CellForest::CellForest(FarExt::TopologyRefiner const &refiner)

@@ -84,7 +84,7 @@ def test_faces_that_a_crease_cuts_have_a_normal_on_each_side():
     positions, faces, creases, values = make_roof(angle)
     refiner = osh.TopologyRefiner(
         faces, face_mask="smooth", first_step="truncate",
-        creases=(creases, np.full(len(creases), 10.0)), fvar_channels=[values],
+        creases=(creases, np.full(len(creases), 10.0)), fvar_channels=[values.ravel()],
         vtx_boundary_interpolation="edge_only")
     refiner.refine_uniform(1, full_topology_in_last_level=True)
     level = refiner.get_level(1)

@@ -255,6 +255,27 @@ TEST_P(SurfaceTest, HasTheNormalsOfLimitTables) {
     }
 }
 
+// Where a crease passes the vertices of a truncated mesh, with two and three triangles on its sides.
+TEST_P(SurfaceTest, HasTheNormalsOfLimitTablesOnBothSidesOfACrease) {
+    Shape const &shape = GetFeatureShape("creaseLoopClosed");
+    auto const refiner = CreateSurfaceRefiner(shape, {GetParam(), FarExt::FirstStep::Truncate}, 1);
+    TopologyLevel const &level = refiner->GetLevel(refiner->GetMaxLevel());
+    FarExt::LimitSides const sides(level);
+    Limits const limits(*refiner);
+    SurfaceSet<double> const surfaces(*refiner, shape.positions);
+    int numOfSecondSides = 0;
+    for (LevelCorner const &corner : getCorners(level)) {
+        Vector3 const normal = GetNormal(surfaces.Evaluate(corner.face, corner.uv));
+        Vector3 const expected = Normalize(Cross(
+            apply(*limits.table, limits.table->GetDuWeights(), corner.side, shape.positions),
+            apply(*limits.table, limits.table->GetDvWeights(), corner.side, shape.positions)));
+        EXPECT_LE(GetDistance(normal, expected), 1e-6)
+            << "vertex " << corner.vert << " in face " << corner.face;
+        numOfSecondSides += sides.GetLocalSide(corner.side) > 0 ? 1 : 0;
+    }
+    EXPECT_GT(numOfSecondSides, 40);
+}
+
 TEST_P(SurfaceTest, HasAnyPlaceBetweenThoseAround) {
     Shape const &shape = GetShape("icosahedron");
     auto const refiner = CreateRefiner(shape, GetParam(), 0);
