@@ -53,11 +53,6 @@ BaseFace const &Surface<REAL>::GetFace() const {
 }
 
 template <typename REAL>
-int Surface<REAL>::GetNumControlPoints() const {
-    return IsValid() ? GetFace().numPoints : 0;
-}
-
-template <typename REAL>
 Far::Index const *Surface<REAL>::getPoints() const {
     return IsValid() ? GetFace().GetPoints() : nullptr;
 }
@@ -119,7 +114,10 @@ void Surface<REAL>::ComputePatchPoints(REAL patchPoints[], PointDescriptor const
     std::vector<int> patches;
     patches.reserve(std::size_t(numPlaces));
     for (int i = 0; i < numPlaces; ++i) {
-        patches.push_back(findPatchPlace(uvs + 2 * std::ptrdiff_t(i), 0).patch);
+        REAL const *const uv = uvs + 2 * std::ptrdiff_t(i);
+        internal::BfrPlace const place = internal::FindBfrPlace(_parameterization, GetFaceShape(),
+                                                                {double(uv[0]), double(uv[1])}, 0);
+        patches.push_back(internal::FindPatchPlace(place, GetFaceShape(), _patchLevel, 0).patch);
     }
     std::sort(patches.begin(), patches.end());
     patches.erase(std::unique(patches.begin(), patches.end()), patches.end());
@@ -139,22 +137,15 @@ void Surface<REAL>::computePatchPoints(REAL patchPoints[], PointDescriptor const
                                   patchPointDesc.size, patchPointDesc.stride, patches, points);
 }
 
-// The patch of a place, with derivatives.
 template <typename REAL>
-internal::PatchPlace Surface<REAL>::findPatchPlace(REAL const uv[2], int numDerivatives) const {
-    return internal::FindPatchPlace(internal::FindBfrPlace(_parameterization, GetFaceShape(),
-                                                           {double(uv[0]), double(uv[1])}, 0),
-                                    GetFaceShape(), _patchLevel, numDerivatives);
-}
-
-template <typename REAL>
-void Surface<REAL>::evaluate(REAL const uv[2], int numDerivatives, REAL const patchPoints[],
+template <int NUM_DERIVATIVES>
+void Surface<REAL>::evaluate(REAL const uv[2], REAL const patchPoints[],
                              PointDescriptor const &pointDesc, REAL *const results[6]) const {
     if (IsValid()) {
-        internal::EvaluatePatch(findPatchPlace(uv, numDerivatives), numDerivatives,
-                                patchPoints +
-                                    std::ptrdiff_t(GetNumControlPoints()) * pointDesc.stride,
-                                pointDesc.size, pointDesc.stride, results);
+        internal::EvaluatePlace<NUM_DERIVATIVES>(
+            _parameterization, GetFaceShape(), {double(uv[0]), double(uv[1])}, _patchLevel,
+            patchPoints + std::ptrdiff_t(_numControlPoints) * pointDesc.stride, pointDesc.size,
+            pointDesc.stride, results);
     }
 }
 
@@ -162,7 +153,7 @@ template <typename REAL>
 void Surface<REAL>::Evaluate(REAL const uv[2], REAL const patchPoints[],
                              PointDescriptor const &pointDesc, REAL p[]) const {
     REAL *const results[6] = {p};
-    evaluate(uv, 0, patchPoints, pointDesc, results);
+    evaluate<0>(uv, patchPoints, pointDesc, results);
 }
 
 template <typename REAL>
@@ -170,7 +161,7 @@ void Surface<REAL>::Evaluate(REAL const uv[2], REAL const patchPoints[],
                              PointDescriptor const &pointDesc, REAL p[], REAL du[],
                              REAL dv[]) const {
     REAL *const results[6] = {p, du, dv};
-    evaluate(uv, 1, patchPoints, pointDesc, results);
+    evaluate<1>(uv, patchPoints, pointDesc, results);
 }
 
 template <typename REAL>
@@ -178,7 +169,7 @@ void Surface<REAL>::Evaluate(REAL const uv[2], REAL const patchPoints[],
                              PointDescriptor const &pointDesc, REAL p[], REAL du[], REAL dv[],
                              REAL duu[], REAL duv[], REAL dvv[]) const {
     REAL *const results[6] = {p, du, dv, duu, duv, dvv};
-    evaluate(uv, 2, patchPoints, pointDesc, results);
+    evaluate<2>(uv, patchPoints, pointDesc, results);
 }
 
 template <typename REAL>

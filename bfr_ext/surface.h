@@ -22,7 +22,6 @@ namespace internal {
 class BaseType;
 template <typename TYPE>
 struct KeptFace;
-struct PatchPlace;
 } // namespace internal
 
 /// \brief The limit surface of a base face, as Bfr::Surface: a function of u and v.
@@ -122,7 +121,7 @@ public:
     /// @{
 
     /// Control points of the face.
-    int GetNumControlPoints() const;
+    int GetNumControlPoints() const { return IsValid() ? _numControlPoints : 0; }
     /// Writes the indices of control points in the mesh: the vertices of the face first, in its order.  No vertex
     /// comes twice, even if the face has it twice.  A face-varying value may come several times: once for each fan of faces
     /// around its vertex, because each fan is refined apart.
@@ -271,11 +270,11 @@ private:
     friend class SurfaceFactory;
 
     Index const *getPoints() const;
-    internal::PatchPlace findPatchPlace(REAL const uv[2], int numDerivatives) const;
     void computePatchPoints(REAL patchPoints[], PointDescriptor const &patchPointDesc,
                             std::vector<int> const *patches) const;
-    void evaluate(REAL const uv[2], int numDerivatives, REAL const patchPoints[],
-                  PointDescriptor const &pointDesc, REAL *const results[6]) const;
+    template <int NUM_DERIVATIVES>
+    void evaluate(REAL const uv[2], REAL const patchPoints[], PointDescriptor const &pointDesc,
+                  REAL *const results[6]) const;
     void evaluate(LevelTessellation const &tessellation, REAL const controlPoints[],
                   PointDescriptor const &pointDesc, REAL *const results[6],
                   PointDescriptor const &resultDesc) const;
@@ -285,6 +284,7 @@ private:
     internal::KeptFace<internal::BaseType> const *_keptFace = nullptr; // the owner's; null: its own
     std::vector<std::byte> _ownFace;
     int _patchLevel = 0;
+    int _numControlPoints = 0; // the face's, without a look at it
     Parameterization _parameterization;
 };
 

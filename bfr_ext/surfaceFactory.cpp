@@ -359,6 +359,7 @@ void SurfaceFactory::set(internal::BaseFace const &face, bool isKept,
     }
     surface._keptFace = isKept ? &face : nullptr;
     surface._patchLevel = getPatchLevel(face.type);
+    surface._numControlPoints = face.numPoints;
     FarExt::FaceShape const shape = face.type.GetShape(face.size);
     if (surface._parameterization.GetFaceShape() != shape) { // mostly that of the face before
         surface._parameterization = Parameterization(shape);

@@ -15,11 +15,8 @@ BfrPlace makePlace(BasePoint const &point, PlanePlace const &place) {
 
 } // namespace
 
-BfrPlace FindBfrPlace(Bfr::Parameterization const &parameterization, FaceShape shape,
-                      Pair const &uv, double tolerance) {
-    if (!parameterization.HasSubFaces()) { // by far the most
-        return {FindBasePoint(shape, uv[0], uv[1], tolerance), {{1, 0}, {0, 1}}, {0, 0}};
-    }
+BfrPlace FindInSubFaces(Bfr::Parameterization const &parameterization, FaceShape shape,
+                        Pair const &uv, double tolerance) {
     // What is none lies in no sub-face.
     bool const isNone = std::isnan(uv[0]) || std::isnan(uv[1]);
     PlanePlace const place =

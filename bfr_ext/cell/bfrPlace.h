@@ -22,11 +22,18 @@ struct BfrPlace {
 /// \brief Finds a place of a base face; of one outside, where the line from the centre to it leaves the face.  Its
 /// coordinates are not numbers where u or v is none.
 ///
-/// \param parameterization  a valid one
+/// \param parameterization  a valid one; of FindInSubFaces() with sub-faces
 /// \param shape             that of the face, as large as the parameterization's
 /// \param tolerance         that of FindBasePoint()
-BfrPlace FindBfrPlace(Bfr::Parameterization const &parameterization, FaceShape shape,
-                      Pair const &uv, double tolerance);
+BfrPlace FindInSubFaces(Bfr::Parameterization const &parameterization, FaceShape shape,
+                        Pair const &uv, double tolerance);
+OPENSUBDIVHEX_INLINE BfrPlace FindBfrPlace(Bfr::Parameterization const &parameterization,
+                                           FaceShape shape, Pair const &uv, double tolerance) {
+    if (parameterization.HasSubFaces()) {
+        return FindInSubFaces(parameterization, shape, uv, tolerance);
+    }
+    return {FindBasePoint(shape, uv[0], uv[1], tolerance), {{1, 0}, {0, 1}}, {0, 0}};
+}
 /// \brief The place i/n on an edge, in the direction of the face; i is less than n.
 ///
 /// The derivatives at the middle of an edge are those of the second sub-face, in which Bfr has it.

@@ -9,7 +9,6 @@
 namespace OpenSubdivHex::BfrExt::internal {
 
 using FarExt::internal::BasePolygon;
-using FarExt::internal::UsePolygon;
 
 namespace {
 
@@ -20,90 +19,15 @@ constexpr int kLastDepth = 40;
 // In the differences between first derivatives at corners that are closer, their rounding shows.
 constexpr int kDepthOfDifferences = 10;
 
-// Vertices of the first levels have coordinates that are multiples of it.
-constexpr double kGrid = 1.0 / (1 << 16);
-
-// Places further away are taken to be there.
-constexpr double kFar = 1e100;
-
-double snap(double coordinate, double tolerance) {
-    double const multiple = std::round(coordinate / kGrid) * kGrid;
-    return std::abs(coordinate - multiple) <= std::min(tolerance, kGrid / 4) ? multiple
-                                                                             : coordinate;
-}
-
-Pair clampToSector(Pair const &coords) {
-    if (coords[0] >= 0 && coords[1] >= 0 && coords[0] + coords[1] <= 1) {
-        return coords;
-    }
-    double const a = std::max(coords[0], 0.0);
-    double const b = std::max(coords[1], 0.0);
-    double const scale = 1 / std::max(a + b, 1.0);
-    return {a * scale, b * scale};
-}
-
 Pair clampToHalf(Pair const &coords) {
     double const h = std::min(std::max(coords[1], 0.0), 0.5);
     return {std::min(std::max(coords[0], 0.5 * h), 1 - 0.5 * h), h};
 }
 
-template <typename POLYGON>
-BasePoint makeBasePoint(POLYGON const &polygon, int sector, Pair const &coords) {
-    std::array<Pair, 2> const &map = polygon.GetSectorMap(sector);
-    return {sector, coords, {map[0], map[1]}};
-}
-
-template <typename POLYGON>
-BasePoint findBasePoint(POLYGON const &polygon, FaceShape shape, double u, double v,
-                        double tolerance) {
-    Pair const center = polygon.GetCenter();
-    // Products of finite coordinates are finite.
-    double const x = std::clamp(u - center[0], -kFar, kFar);
-    double const y = std::clamp(v - center[1], -kFar, kFar);
-    auto const findIn = [&](int sector, BasePoint &point) {
-        auto const &[a, b] = polygon.GetSectorMap(sector);
-        point.sector = sector;
-        point.coords = {a[0] * x + a[1] * y, b[0] * x + b[1] * y};
-        point.toCoords[0] = a;
-        point.toCoords[1] = b;
-    };
-    BasePoint best;
-    if (shape == FaceShape(4)) { // by far the most
-        constexpr int kSectors[2][2] = {{0, 1}, {3, 2}};
-        findIn(kSectors[y > x ? 1 : 0][y > -x ? 1 : 0], best);
-    } else {
-        findIn(shape.GetFirstSector(), best);
-        for (int sector = best.sector + 1; sector < shape.size; ++sector) {
-            BasePoint point;
-            findIn(sector, point);
-            if (std::min(point.coords[0], point.coords[1]) >
-                std::min(best.coords[0], best.coords[1])) {
-                best = point;
-            }
-        }
-    }
-    if (tolerance > 0) {
-        best.coords = {snap(best.coords[0], tolerance), snap(best.coords[1], tolerance)};
-    }
-    best.coords = clampToSector(best.coords);
-    // Between two sectors it is the second, as in tessellations.
-    if (best.coords[0] == 0) {
-        SectorPlace<Pair> const name = NameOf(shape, SectorPlace<Pair>{best.sector, best.coords});
-        best = makeBasePoint(polygon, name.sector, name.coords);
-    }
-    return best;
-}
-
 } // namespace
 
-BasePoint FindBasePoint(FaceShape shape, double u, double v, double tolerance) {
-    return UsePolygon(
-        shape, [&](auto const &polygon) { return findBasePoint(polygon, shape, u, v, tolerance); });
-}
-
-BasePoint MakeBasePoint(FaceShape shape, int sector, Pair const &coords) {
-    return UsePolygon(shape,
-                      [&](auto const &polygon) { return makeBasePoint(polygon, sector, coords); });
+BasePoint FindInUncommonPolygon(FaceShape shape, double u, double v, double tolerance) {
+    return FindBasePoint(BasePolygon(shape), shape, u, v, tolerance);
 }
 
 CellStep FindCellStep(FaceShape shape, int sector, Pair const &coords) {
@@ -119,7 +43,7 @@ CellStep FindCellStep(FaceShape shape, int sector, Pair const &coords) {
 
 Pair CellStep::Apply(Pair const &coords) const {
     Pair const ofChild = map->Apply(coords);
-    return isChildWhole ? clampToSector(ofChild) : clampToHalf(ofChild);
+    return isChildWhole ? ClampToSector(ofChild) : clampToHalf(ofChild);
 }
 
 int FindCellCorner(FaceShape shape, int sector, Pair const &coords) {

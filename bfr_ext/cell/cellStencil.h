@@ -2,27 +2,12 @@
 #ifndef OPENSUBDIVHEX_BFR_EXT_CELL_CELL_STENCIL_H
 #define OPENSUBDIVHEX_BFR_EXT_CELL_CELL_STENCIL_H
 
+#include "basePoint.h"
 #include "cellType.h"
 #include "halfCell.h"
 #include "secondDerivatives.h"
 
 namespace OpenSubdivHex::BfrExt::internal {
-
-/// A point of a base face: a sector of its polygon, and coordinates there.
-struct BasePoint {
-    int sector;
-    Pair coords;
-    Pair toCoords[2]; ///< of u and v: the derivatives of the coordinates by them
-};
-
-/// \brief Finds a point of the plane of a base face, or where the line from the
-/// centre to it leaves the face.  Its coordinates are not numbers where u or v is none.
-///
-/// \param tolerance  of coordinates: those that are so close to a multiple of a small power of 1/2, as
-///                   vertices have, are taken for it; 0: none are
-BasePoint FindBasePoint(FaceShape shape, double u, double v, double tolerance);
-/// The point with coordinates in a sector, which are inside.
-BasePoint MakeBasePoint(FaceShape shape, int sector, Pair const &coords);
 
 /// \brief Which child of a cell has a point, and how coordinates become those in the child.
 struct CellStep {

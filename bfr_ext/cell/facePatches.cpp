@@ -2,7 +2,7 @@
 #include "facePatches.h"
 
 #include "baseType.h"
-#include "lanes.h"
+#include "patchSums.h"
 #include "placeKernel.h"
 #include "refinedCells.h"
 
@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <type_traits>
 #include <utility>
@@ -210,14 +211,15 @@ private:
 struct Quadrilateral {
     double s;
     double t;
-    Pair bySt[2]; // derivatives of the first coordinate, and of the second, by s and t
-    Pair mixed;   // by s and t
+    Pair byCoords[2]; // derivatives of s, and of t, by the coordinates
+    Pair mixed;       // of the coordinates by s and t
 };
 
-Quadrilateral findInTrapezoid(Pair const &coords) {
+OPENSUBDIVHEX_INLINE Quadrilateral findInTrapezoid(Pair const &coords) {
     double const h = coords[1];
-    double const s = (coords[0] - 0.5 * h) / (1 - h);
-    return {s, 2 * h, {{1 - h, 0.25 - 0.5 * s}, {0, 0.5}}, {-0.5, 0}};
+    double const byLength = 1 / (1 - h);
+    double const s = (coords[0] - 0.5 * h) * byLength;
+    return {s, 2 * h, {{byLength, (s - 0.5) * byLength}, {0, 2}}, {-0.5, 0}};
 }
 
 // The kite between the middles of two edges, by which coordinates are, the centre, and a corner, which is
@@ -228,7 +230,11 @@ Quadrilateral findInKite(Pair const &coords, double m) {
     double const linear = 1 + m * difference;
     double const a = 2 * coords[1] / (linear + std::sqrt(linear * linear + 4 * m * coords[1]));
     double const b = a + difference;
-    return {1 - a, 1 - b, {{-m * b, -(1 + m * a)}, {-(1 + m * b), -m * a}}, {m, m}};
+    double const factor = 1 / (1 + m * (a + b));
+    return {1 - a,
+            1 - b,
+            {{m * a * factor, -(1 + m * a) * factor}, {-(1 + m * b) * factor, m * b * factor}},
+            {m, m}};
 }
 
 } // namespace
@@ -241,13 +247,100 @@ int GetNumFacePatches(FaceShape shape, int level) {
 
 namespace {
 
+// A half cell of a level.
+struct SectorCell {
+    CellMap map; // from coordinates in the sector to those in the cell
+    // Patches of sectors before those of the step that made the cell, and of that step, and those before the cell.
+    int numBeforeStep;
+    int numInStep;
+    int numBefore;
+};
+
+// The half cells of a level in the sector of an edge of a base face, by place.
+//
+// Lines parallel to the sides of the sector divide it into triangles.  A half cell is three of them, and the one at the
+// centre is the sector of a whole cell.
+class SectorCells {
+public:
+    static SectorCells const &Get(int level) {
+        static std::vector<SectorCells> const kAll = makeAll();
+        return kAll[std::size_t(level - kFirstPatchLevel)];
+    }
+
+    // Null: in the whole cell.
+    OPENSUBDIVHEX_INLINE SectorCell const *Find(Pair const &coords) const {
+        // Those that are not numbers are in the last triangles.
+        double const a = coords[0] * _width;
+        double const b = coords[1] * _width;
+        int const i = int(std::min(double(_width - 1), a));
+        int const k = int(std::min(double(_width - 1), b));
+        // The upper triangle lies beyond the diagonal.
+        int const isUpper = int(std::min(double(_width), a + b)) - (i + k);
+        int const cell = _ofTriangles[2 * (i * _width + k) + isUpper];
+        return cell < 0 ? nullptr : &_cells[std::size_t(cell)];
+    }
+
+private:
+    static std::vector<SectorCells> makeAll() {
+        std::vector<SectorCells> all;
+        for (int level = kFirstPatchLevel; level <= kLastPatchLevel; ++level) {
+            all.push_back(SectorCells(level));
+        }
+        return all;
+    }
+
+    explicit SectorCells(int level)
+        : _width(1 << level), _cells(std::size_t(getNumHalfPatches(level) - 1) / 3) {
+        _ofTriangles.reserve(2 * std::size_t(_width) * std::size_t(_width));
+        for (int i = 0; i < _width; ++i) {
+            for (int k = 0; k < _width; ++k) {
+                for (double const middle : {1.0 / 3, 2.0 / 3}) {
+                    // Triangles beyond the edge have places by rounding alone, of the cell at the edge.
+                    double const scale = 1 / std::max(double(_width), i + k + 2 * middle);
+                    _ofTriangles.push_back(
+                        add(level, {(i + middle) * scale, (k + middle) * scale}));
+                }
+            }
+        }
+    }
+
+    // Adds the cell that has a place; -1: the whole cell.
+    int add(int level, Pair coords) {
+        CellMap map = {{{1, 0}, {0, 1}}, {0, 0}};
+        auto const go = [&](CellMap const &next) {
+            map = Concatenate(map, next);
+            coords = next.Apply(coords);
+        };
+        int left = level;
+        while (left > 0 && coords[0] + coords[1] <= 0.5) {
+            go(kToFFace);
+            --left;
+        }
+        if (left == 0) {
+            return -1;
+        }
+        --left;
+        go(HalfCell::kFromSector);
+        SectorCell cell = {{}, (getNumHalfPatches(left) - 1) / 3, getNumHalfPatches(left), 0};
+        while (left > 0) {
+            --left;
+            int const child = HalfCell::FindChild(coords);
+            cell.numBefore += child * getNumHalfPatches(left);
+            go(HalfCell::kChildren[child]);
+        }
+        cell.map = map;
+        int const number = cell.numBeforeStep + cell.numBefore;
+        _cells[std::size_t(number)] = cell;
+        return number;
+    }
+
+    int _width; // triangles at a side
+    std::vector<SectorCell> _cells;
+    std::vector<std::int16_t> _ofTriangles; // two of each parallelogram
+};
+
 // The linear part of a map from the coordinates in a sector.
 using Linear = std::array<Pair, 2>;
-
-// To those in a half cell of the same size, behind steps that turn it by so many sixths of a full turn.
-constexpr Linear kFromSectorTo[6] = {{{{-0.5, 0.5}, {-1, -1}}}, {{{-1, -0.5}, {0, -1}}},
-                                     {{{-0.5, -1}, {1, 0}}},    {{{0.5, -0.5}, {1, 1}}},
-                                     {{{1, 0.5}, {0, 1}}},      {{{0.5, 1}, {-1, 0}}}};
 
 // The kite with these corners in the plane that has a place.
 Quadrilateral findInKite(Pair const (&corners)[4], Pair const &place) {
@@ -264,15 +357,21 @@ Quadrilateral findInKite(Pair const (&corners)[4], Pair const &place) {
     constexpr int kMaxSteps = 20;
     constexpr double kConverged = 1e-14;
     for (int step = 0; step < kMaxSteps; ++step) {
+        Pair bySt[2];
         Pair missing;
         for (std::size_t i = 0; i < 2; ++i) {
-            in.bySt[i] = {b[i] + in.t * d[i], c[i] + in.s * d[i]};
-            missing[i] = place[i] - (corners[0][i] + in.s * in.bySt[i][0] + in.t * c[i]);
+            bySt[i] = {b[i] + in.t * d[i], c[i] + in.s * d[i]};
+            missing[i] = place[i] - (corners[0][i] + in.s * bySt[i][0] + in.t * c[i]);
         }
-        auto const &[x, y] = in.bySt;
-        double const determinant = x[0] * y[1] - x[1] * y[0];
-        double const stepS = (missing[0] * y[1] - x[1] * missing[1]) / determinant;
-        double const stepT = (x[0] * missing[1] - missing[0] * y[0]) / determinant;
+        auto const &[x, y] = bySt;
+        double const factor = 1 / (x[0] * y[1] - x[1] * y[0]);
+        in.byCoords[0] = {y[1] * factor, -x[1] * factor};
+        in.byCoords[1] = {-y[0] * factor, x[0] * factor};
+        auto const getStep = [&](Pair const &by) {
+            return by[0] * missing[0] + by[1] * missing[1];
+        };
+        double const stepS = getStep(in.byCoords[0]);
+        double const stepT = getStep(in.byCoords[1]);
         in.s += stepS;
         in.t += stepT;
         if (std::abs(stepS) + std::abs(stepT) < kConverged) {
@@ -357,13 +456,13 @@ Quadrilateral findInWhole(FaceShape shape, int sector, Pair const &coords, int &
 
 // The derivatives of the coordinates that a map makes of those in a sector, by u and v: once, and by both.
 struct ByUv {
-    ByUv(Linear const &linear, double scale, BfrPlace const &place, bool hasSubFaces) {
+    OPENSUBDIVHEX_INLINE ByUv(Linear const &linear, BfrPlace const &place, bool hasSubFaces) {
         for (std::size_t i = 0; i < 2; ++i) {
             // By the coordinates of the plane, which in triangles and quads are u and v.
             Pair by;
             for (std::size_t k = 0; k < 2; ++k) {
-                by[k] = scale * (linear[i][0] * place.point.toCoords[0][k] +
-                                 linear[i][1] * place.point.toCoords[1][k]);
+                by[k] = linear[i][0] * place.point.toCoords[0][k] +
+                        linear[i][1] * place.point.toCoords[1][k];
             }
             first[i] = by;
             if (hasSubFaces) {
@@ -378,67 +477,82 @@ struct ByUv {
     Pair mixed = {0, 0};
 };
 
+// Adds where the place is in its patch, whose cell has coordinates that are a linear map from those in the sector.
+template <int NUM_DERIVATIVES>
+OPENSUBDIVHEX_INLINE void addPlace(Quadrilateral const &in, Linear const &linear,
+                                   BfrPlace const &ofFace, bool hasSubFaces, PatchPlace &place) {
+    // Gregory patches have poles beyond their corners.
+    place.s = std::min(std::max(in.s, 0.0), 1.0);
+    place.t = std::min(std::max(in.t, 0.0), 1.0);
+    if constexpr (NUM_DERIVATIVES > 0) {
+        ByUv const cell(linear, ofFace, hasSubFaces);
+        auto const toSt = [&](double first, double second) {
+            return Pair{in.byCoords[0][0] * first + in.byCoords[0][1] * second,
+                        in.byCoords[1][0] * first + in.byCoords[1][1] * second};
+        };
+        for (std::size_t k = 0; k < 2; ++k) {
+            Pair const byUv = toSt(cell.first[0][k], cell.first[1][k]);
+            place.first[0][k] = byUv[0];
+            place.first[1][k] = byUv[1];
+        }
+        if constexpr (NUM_DERIVATIVES > 1) {
+            Pair const bend = toSt(in.mixed[0], in.mixed[1]);
+            auto const &[s, t] = place.first;
+            double const products[3] = {2 * s[0] * t[0], s[0] * t[1] + s[1] * t[0],
+                                        2 * s[1] * t[1]};
+            for (std::size_t i = 0; i < 3; ++i) {
+                place.second[i] = {-bend[0] * products[i], -bend[1] * products[i]};
+            }
+            Pair const mixed = toSt(cell.mixed[0], cell.mixed[1]);
+            place.second[1] = {place.second[1][0] + mixed[0], place.second[1][1] + mixed[1]};
+        }
+    }
+}
+
+// In the whole cell of a level.
+template <int NUM_DERIVATIVES>
+PatchPlace findInMiddle(BfrPlace const &ofFace, FaceShape shape, int level) {
+    double const scale = 1 << level;
+    auto const [a, b] = ofFace.point.coords;
+    PatchPlace place;
+    place.patch = 0;
+    Linear linear;
+    Quadrilateral const in =
+        findInWhole(shape, ofFace.point.sector, {scale * a, scale * b}, place.patch, linear);
+    for (Pair &row : linear) {
+        row = {scale * row[0], scale * row[1]};
+    }
+    addPlace<NUM_DERIVATIVES>(in, linear, ofFace, shape.size > 4, place);
+    return place;
+}
+
+// Calls onPatch(number) as soon as the patch is known.
+template <int NUM_DERIVATIVES, typename FUNCTION>
+OPENSUBDIVHEX_INLINE PatchPlace findPatchPlace(BfrPlace const &ofFace, FaceShape shape, int level,
+                                               FUNCTION const &onPatch) {
+    Pair const &coords = ofFace.point.coords;
+    SectorCell const *const cell = SectorCells::Get(level).Find(coords);
+    if (!cell) {
+        return findInMiddle<NUM_DERIVATIVES>(ofFace, shape, level);
+    }
+    PatchPlace place;
+    place.patch =
+        MakeFaceCells(shape).GetNumPatches() + shape.GetNumSectors() * cell->numBeforeStep +
+        (ofFace.point.sector - shape.GetFirstSector()) * cell->numInStep + cell->numBefore;
+    onPatch(place.patch);
+    addPlace<NUM_DERIVATIVES>(findInTrapezoid(cell->map.Apply(coords)),
+                              {cell->map.rows[0], cell->map.rows[1]}, ofFace, shape.size > 4,
+                              place);
+    return place;
+}
+
 } // namespace
 
 PatchPlace FindPatchPlace(BfrPlace const &ofFace, FaceShape shape, int level, int numDerivatives) {
-    int const sector = ofFace.point.sector;
-    Pair coords = ofFace.point.coords;
-    int left = level;
-    for (; left > 0 && coords[0] + coords[1] <= 0.5; --left) {
-        coords = {2 * coords[0], 2 * coords[1]};
-    }
-    PatchPlace place;
-    place.patch = 0;
-    Quadrilateral in;
-    Linear linear;
-    // Each step halves cells, but that from the sector to the half cell, which is part of the map.
-    int const numHalvings = left == 0 ? level : level - 1;
-    if (left == 0) {
-        in = findInWhole(shape, sector, coords, place.patch, linear);
-    } else {
-        --left;
-        coords = HalfCell::kFromSector.Apply(coords);
-        place.patch = GetNumFacePatches(shape, left) +
-                      (sector - shape.GetFirstSector()) * getNumHalfPatches(left);
-        int turn = 0;
-        while (left > 0) {
-            --left;
-            int const child = HalfCell::FindChild(coords);
-            place.patch += child * getNumHalfPatches(left);
-            coords = HalfCell::kChildren[child].Apply(coords);
-            turn += HalfCell::kTurns[child];
-        }
-        linear = kFromSectorTo[turn % 6];
-        in = findInTrapezoid(coords);
-    }
-    place.s = in.s;
-    place.t = in.t;
-    if (numDerivatives == 0) {
-        return place;
-    }
-    ByUv const cell(linear, double(1 << numHalvings), ofFace, shape.size > 4);
-    double const factor = 1 / (in.bySt[0][0] * in.bySt[1][1] - in.bySt[0][1] * in.bySt[1][0]);
-    auto const solve = [&](double first, double second) {
-        return Pair{(in.bySt[1][1] * first - in.bySt[0][1] * second) * factor,
-                    (in.bySt[0][0] * second - in.bySt[1][0] * first) * factor};
-    };
-    for (std::size_t k = 0; k < 2; ++k) {
-        Pair const byUv = solve(cell.first[0][k], cell.first[1][k]);
-        place.first[0][k] = byUv[0];
-        place.first[1][k] = byUv[1];
-    }
-    if (numDerivatives == 1) {
-        return place;
-    }
-    Pair const bend = solve(in.mixed[0], in.mixed[1]);
-    auto const &[s, t] = place.first;
-    double const products[3] = {2 * s[0] * t[0], s[0] * t[1] + s[1] * t[0], 2 * s[1] * t[1]};
-    for (std::size_t i = 0; i < 3; ++i) {
-        place.second[i] = {-bend[0] * products[i], -bend[1] * products[i]};
-    }
-    Pair const mixed = solve(cell.mixed[0], cell.mixed[1]);
-    place.second[1] = {place.second[1][0] + mixed[0], place.second[1][1] + mixed[1]};
-    return place;
+    auto const onPatch = [](int) {};
+    return numDerivatives == 0   ? findPatchPlace<0>(ofFace, shape, level, onPatch)
+           : numDerivatives == 1 ? findPatchPlace<1>(ofFace, shape, level, onPatch)
+                                 : findPatchPlace<2>(ofFace, shape, level, onPatch);
 }
 
 namespace {
@@ -479,154 +593,51 @@ void MakeFacePatchPoints(BaseType const &type, int faceSize, int level, REAL con
 
 namespace {
 
-// The cubic Bernstein polynomials and their derivatives, by order.
+// Asks for the points of a patch, of three numbers each, so that they are on their way while its weights are computed,
+// and those of the next place as well: benchmark places of surfaces is 1.5 times as fast.
 template <typename REAL>
-struct Bernstein {
-    explicit Bernstein(REAL s) {
-        REAL const r = 1 - s;
-        REAL const all[3][4] = {{r * r * r, 3 * r * r * s, 3 * r * s * s, s * s * s},
-                                {-3 * r * r, 3 * r * (r - 2 * s), 3 * s * (2 * r - s), 3 * s * s},
-                                {6 * r, 6 * (s - 2 * r), 6 * (r - 2 * s), 6 * s}};
-        std::copy(&all[0][0], &all[0][0] + 12, &weights[0][0]);
+OPENSUBDIVHEX_INLINE void prefetch([[maybe_unused]] REAL const *points) {
+#if defined(__GNUC__)
+    constexpr int kLine = 64 / sizeof(REAL);
+    constexpr int kLast = 3 * kNumPatchPoints - 1;
+    for (int i = 0; i < kLast; i += kLine) {
+        __builtin_prefetch(points + i);
     }
-
-    REAL weights[3][4];
-};
-
-// Some numbers of the points of a patch, summed up row by row, by t, as those of a bicubic patch.
-//
-// IS_PACKED: points are three numbers each, without gaps; else numLanes of them are lanes.
-template <int NUM_DERIVATIVES, bool IS_PACKED, typename REAL>
-class PatchSums {
-public:
-    OPENSUBDIVHEX_INLINE PatchSums(REAL s, REAL t, REAL const *points, std::ptrdiff_t stride,
-                                   int numLanes)
-        : _byS(s), _byT(t), _points(points), _stride(IS_PACKED ? 3 : stride),
-          _numLanes(IS_PACKED ? 3 : numLanes) {
-        addRow<0>(load(0), load(1), load(7), load(5));
-        addRow<1>(load(2), blend(3, s, t), blend(8, t, 1 - s), load(6));
-        addRow<2>(load(16), blend(18, 1 - t, s), blend(13, 1 - s, 1 - t), load(12));
-        addRow<3>(load(15), load(17), load(11), load(10));
-    }
-
-    Lanes<REAL> point = {};
-    Lanes<REAL> ds = {};
-    Lanes<REAL> dt = {};
-    Lanes<REAL> dss = {};
-    Lanes<REAL> dst = {};
-    Lanes<REAL> dtt = {};
-
-private:
-    OPENSUBDIVHEX_INLINE Lanes<REAL> load(int i) const {
-        REAL const *const from = _points + i * _stride;
-        if constexpr (IS_PACKED) {
-            return i + 1 < kNumPatchPoints ? Lanes<REAL>::Load(from) // with a number of the next
-                                           : Lanes<REAL>{{from[0], from[1], from[2], 0}};
-        }
-        Lanes<REAL> result = {};
-        std::copy_n(from, _numLanes, result.values);
-        return result;
-    }
-
-    // The two points inside of a corner; where both distances are 0, their mean.
-    OPENSUBDIVHEX_INLINE Lanes<REAL> blend(int first, REAL ofFirst, REAL ofSecond) const {
-        constexpr REAL kLeast = std::numeric_limits<REAL>::min();
-        REAL const share = (ofFirst + kLeast) / (ofFirst + ofSecond + 2 * kLeast);
-        return load(first) * share + load(first + 1) * (1 - share);
-    }
-
-    template <int ROW>
-    OPENSUBDIVHEX_INLINE void addRow(Lanes<REAL> const &a, Lanes<REAL> const &b,
-                                     Lanes<REAL> const &c, Lanes<REAL> const &d) {
-        auto const sum = [&](REAL const(&weights)[4]) {
-            return a * weights[0] + b * weights[1] + (c * weights[2] + d * weights[3]);
-        };
-        Lanes<REAL> const ofPoint = sum(_byS.weights[0]);
-        point = point + ofPoint * _byT.weights[0][ROW];
-        if constexpr (NUM_DERIVATIVES > 0) {
-            Lanes<REAL> const ofDs = sum(_byS.weights[1]);
-            ds = ds + ofDs * _byT.weights[0][ROW];
-            dt = dt + ofPoint * _byT.weights[1][ROW];
-            if constexpr (NUM_DERIVATIVES > 1) {
-                dss = dss + sum(_byS.weights[2]) * _byT.weights[0][ROW];
-                dst = dst + ofDs * _byT.weights[1][ROW];
-                dtt = dtt + ofPoint * _byT.weights[2][ROW];
-            }
-        }
-    }
-
-    Bernstein<REAL> const _byS;
-    Bernstein<REAL> const _byT;
-    REAL const *const _points;
-    std::ptrdiff_t const _stride;
-    int const _numLanes;
-};
-
-template <int NUM_DERIVATIVES, bool IS_PACKED, typename REAL>
-void evaluateLanes(PatchPlace const &place, REAL const *points, std::ptrdiff_t stride, int numLanes,
-                   REAL *const *results, int firstResult) {
-    PatchSums<NUM_DERIVATIVES, IS_PACKED, REAL> const sums(REAL(place.s), REAL(place.t), points,
-                                                           stride, numLanes);
-    auto const write = [&](int result, Lanes<REAL> const &values) {
-        std::copy_n(values.values, IS_PACKED ? 3 : numLanes, results[result] + firstResult);
-    };
-    write(0, sums.point);
-    if constexpr (NUM_DERIVATIVES > 0) {
-        auto const &[toS, toT] = place.first;
-        write(1, sums.ds * REAL(toS[0]) + sums.dt * REAL(toT[0]));
-        write(2, sums.ds * REAL(toS[1]) + sums.dt * REAL(toT[1]));
-        if constexpr (NUM_DERIVATIVES > 1) {
-            constexpr std::size_t kBy[3][2] = {{0, 0}, {0, 1}, {1, 1}};
-            for (std::size_t k = 0; k < 3; ++k) {
-                auto const [i, j] = kBy[k];
-                write(int(3 + k), sums.dss * REAL(toS[i] * toS[j]) +
-                                      sums.dst * REAL(toS[i] * toT[j] + toS[j] * toT[i]) +
-                                      sums.dtt * REAL(toT[i] * toT[j]) +
-                                      (sums.ds * REAL(place.second[k][0]) +
-                                       sums.dt * REAL(place.second[k][1])));
-            }
-        }
-    }
+    __builtin_prefetch(points + kLast);
+#endif
 }
 
 } // namespace
 
-template <typename REAL>
-void EvaluatePatch(PatchPlace const &place, int numDerivatives, REAL const *points, int size,
-                   std::ptrdiff_t stride, REAL *const *results) {
-    constexpr int kLanes = int(Lanes<REAL>::kCount);
-    REAL const *const first = points + std::ptrdiff_t(place.patch) * kNumPatchPoints * stride;
-    for (int lane = 0; lane < size; lane += kLanes) {
-        int const numLanes = std::min(kLanes, size - lane);
-        auto const evaluate = [&](auto isPacked) {
-            constexpr bool kIsPacked = decltype(isPacked)::value;
-            auto const evaluateTo = [&](auto number) {
-                evaluateLanes<decltype(number)::value, kIsPacked>(place, first + lane, stride,
-                                                                  numLanes, results, lane);
-            };
-            if (numDerivatives == 0) {
-                evaluateTo(std::integral_constant<int, 0>());
-            } else if (numDerivatives == 1) {
-                evaluateTo(std::integral_constant<int, 1>());
-            } else {
-                evaluateTo(std::integral_constant<int, 2>());
-            }
-        };
-        if (size == 3 && stride == 3) { // by far the most
-            evaluate(std::true_type());
-        } else {
-            evaluate(std::false_type());
-        }
-    }
+template <int NUM_DERIVATIVES, typename REAL>
+void EvaluatePlace(Bfr::Parameterization const &parameterization, FaceShape shape, Pair const &uv,
+                   int level, REAL const *points, int size, std::ptrdiff_t stride,
+                   REAL *const *results) {
+    auto const getPoints = [&](int patch) {
+        return points + std::ptrdiff_t(patch) * kNumPatchPoints * stride;
+    };
+    PatchPlace const place =
+        findPatchPlace<NUM_DERIVATIVES>(FindBfrPlace(parameterization, shape, uv, 0), shape, level,
+                                        [&](int patch) { prefetch(getPoints(patch)); });
+    SumUpPatch(PatchWeights<NUM_DERIVATIVES, REAL>(place), getPoints(place.patch), size, stride,
+               results);
 }
 
 template void MakeFacePatchPoints(BaseType const &, int, int, float const *, int, std::ptrdiff_t,
                                   std::vector<int> const *, float *);
 template void MakeFacePatchPoints(BaseType const &, int, int, double const *, int, std::ptrdiff_t,
                                   std::vector<int> const *, double *);
-template void EvaluatePatch(PatchPlace const &, int, float const *, int, std::ptrdiff_t,
-                            float *const *);
-template void EvaluatePatch(PatchPlace const &, int, double const *, int, std::ptrdiff_t,
-                            double *const *);
+template void EvaluatePlace<0>(Bfr::Parameterization const &, FaceShape, Pair const &, int,
+                               float const *, int, std::ptrdiff_t, float *const *);
+template void EvaluatePlace<0>(Bfr::Parameterization const &, FaceShape, Pair const &, int,
+                               double const *, int, std::ptrdiff_t, double *const *);
+template void EvaluatePlace<1>(Bfr::Parameterization const &, FaceShape, Pair const &, int,
+                               float const *, int, std::ptrdiff_t, float *const *);
+template void EvaluatePlace<1>(Bfr::Parameterization const &, FaceShape, Pair const &, int,
+                               double const *, int, std::ptrdiff_t, double *const *);
+template void EvaluatePlace<2>(Bfr::Parameterization const &, FaceShape, Pair const &, int,
+                               float const *, int, std::ptrdiff_t, float *const *);
+template void EvaluatePlace<2>(Bfr::Parameterization const &, FaceShape, Pair const &, int,
+                               double const *, int, std::ptrdiff_t, double *const *);
 
 } // namespace OpenSubdivHex::BfrExt::internal

@@ -46,13 +46,15 @@ void MakeFacePatchPoints(BaseType const &type, int faceSize, int level, REAL con
                          int size, std::ptrdiff_t stride, std::vector<int> const *wanted,
                          REAL *points);
 
-/// \brief Evaluates a patch: the point, and derivatives by u and v as far as \p numDerivatives asks: 0, 1 or 2.
+/// \brief Evaluates the patch of a place: the point, and derivatives by u and v as far as NUM_DERIVATIVES asks:
+/// 0, 1 or 2.
 ///
 /// \param points   those of all patches
 /// \param results  the point; by u, by v; by u twice, by u and v, by v twice
-template <typename REAL>
-void EvaluatePatch(PatchPlace const &place, int numDerivatives, REAL const *points, int size,
-                   std::ptrdiff_t stride, REAL *const *results);
+template <int NUM_DERIVATIVES, typename REAL>
+void EvaluatePlace(Bfr::Parameterization const &parameterization, FaceShape shape, Pair const &uv,
+                   int level, REAL const *points, int size, std::ptrdiff_t stride,
+                   REAL *const *results);
 
 } // namespace OpenSubdivHex::BfrExt::internal
 

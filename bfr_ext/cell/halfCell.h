@@ -69,9 +69,6 @@ public:
                                              {{{-2, 0}, {0, -2}}, {1.5, 1}},
                                              {{{-1, -1.5}, {2, -1}}, {1, 0}}};
 
-    /// Children are half as large, and turned by so many sixths of a full turn.
-    static constexpr int kTurns[4] = {0, 2, 3, 4};
-
     static int FindChild(Pair const &point) {
         double const x = 2 * point[0] - 1;
         double const h = point[1];

@@ -4,6 +4,8 @@
 
 #include "stepMatrix.h"
 
+#include "far_ext/vtr/inline.h"
+
 #include <algorithm>
 #include <cstddef>
 
@@ -14,21 +16,28 @@ template <typename REAL>
 struct Lanes {
     static constexpr std::size_t kCount = StepMatrix::kPadding;
 
-    static Lanes Load(REAL const *from) {
+    OPENSUBDIVHEX_INLINE static Lanes Load(REAL const *from) {
         Lanes result;
         std::copy_n(from, kCount, result.values);
         return result;
     }
-    void Store(REAL *to) const { std::copy_n(values, kCount, to); }
+    OPENSUBDIVHEX_INLINE void Store(REAL *to) const { std::copy_n(values, kCount, to); }
 
-    Lanes operator+(Lanes const &other) const {
+    OPENSUBDIVHEX_INLINE Lanes operator+(Lanes const &other) const {
         Lanes result;
         for (std::size_t i = 0; i < kCount; ++i) {
             result.values[i] = values[i] + other.values[i];
         }
         return result;
     }
-    Lanes operator*(REAL factor) const {
+    OPENSUBDIVHEX_INLINE Lanes operator-(Lanes const &other) const {
+        Lanes result;
+        for (std::size_t i = 0; i < kCount; ++i) {
+            result.values[i] = values[i] - other.values[i];
+        }
+        return result;
+    }
+    OPENSUBDIVHEX_INLINE Lanes operator*(REAL factor) const {
         Lanes result;
         for (std::size_t i = 0; i < kCount; ++i) {
             result.values[i] = values[i] * factor;

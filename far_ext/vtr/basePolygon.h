@@ -127,9 +127,7 @@ public:
     /// Returns the polygon of a shape; null where it is not common.
     static KnownPolygon const *Find(FaceShape shape) {
         int const size = shape.size;
-        static KnownPolygon const kAll[] = {KnownPolygon(kMinSize), KnownPolygon(4),
-                                            KnownPolygon(5),        KnownPolygon(6),
-                                            KnownPolygon(7),        KnownPolygon(kMaxSize)};
+        static KnownPolygon const *const kAll = makeAll();
         bool const isKnown = kMinSize <= size && size <= kMaxSize && !shape.isHalf;
         return isKnown ? &kAll[size - kMinSize] : nullptr;
     }
@@ -141,6 +139,13 @@ public:
 private:
     static constexpr int kMinSize = 3;
     static constexpr int kMaxSize = 8;
+
+    static KnownPolygon const *makeAll() {
+        static KnownPolygon const kAll[] = {KnownPolygon(kMinSize), KnownPolygon(4),
+                                            KnownPolygon(5),        KnownPolygon(6),
+                                            KnownPolygon(7),        KnownPolygon(kMaxSize)};
+        return kAll;
+    }
 
     explicit KnownPolygon(int size) : _center(BasePolygon(size).GetCenter()) {
         for (int i = 0; i < size; ++i) {

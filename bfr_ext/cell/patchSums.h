@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: Apache-2.0
+#ifndef OPENSUBDIVHEX_BFR_EXT_CELL_PATCH_SUMS_H
+#define OPENSUBDIVHEX_BFR_EXT_CELL_PATCH_SUMS_H
+
+#include "facePatches.h"
+
+#include "far_ext/vtr/inline.h"
+
+#include <cstddef>
+#include <limits>
+
+namespace OpenSubdivHex::BfrExt::internal {
+
+/// A coordinate in a patch, and the quadratic Bernstein polynomials there.
+template <typename REAL>
+struct PatchCoordinate {
+    explicit PatchCoordinate(double s)
+        : toStart(REAL(1 - s)),
+          toEnd(REAL(s)), quadratic{toStart * toStart, 2 * toStart * toEnd, toEnd * toEnd} {}
+
+    REAL toStart; ///< what the ends weigh
+    REAL toEnd;
+    REAL quadratic[3];
+};
+
+/// What the points of a patch weigh, and how derivatives by s and t become those by u and v.
+template <int NUM_DERIVATIVES, typename REAL>
+struct PatchWeights {
+    OPENSUBDIVHEX_INLINE explicit PatchWeights(PatchPlace const &place) : s(place.s), t(place.t) {
+        // Of two points inside of a corner; where both distances are 0, half.
+        auto const getShare = [](REAL ofFirst, REAL ofSecond) {
+            constexpr REAL kLeast = std::numeric_limits<REAL>::min();
+            return (ofFirst + kLeast) / (ofFirst + ofSecond + 2 * kLeast);
+        };
+        shares[0] = getShare(s.toEnd, t.toEnd);
+        shares[1] = getShare(t.toEnd, s.toStart);
+        shares[2] = getShare(s.toStart, t.toStart);
+        shares[3] = getShare(t.toStart, s.toEnd);
+        if constexpr (NUM_DERIVATIVES > 0) {
+            constexpr int kDegree = 3;
+            auto const &[toS, toT] = place.first;
+            for (std::size_t i = 0; i < 2; ++i) {
+                byUv[i][0] = REAL(kDegree * toS[i]);
+                byUv[i][1] = REAL(kDegree * toT[i]);
+            }
+            if constexpr (NUM_DERIVATIVES > 1) {
+                constexpr std::size_t kBy[3][2] = {{0, 0}, {0, 1}, {1, 1}};
+                for (std::size_t k = 0; k < 3; ++k) {
+                    auto const [i, j] = kBy[k];
+                    byUvTwice[k][0] = REAL(kDegree * place.second[k][0]);
+                    byUvTwice[k][1] = REAL(kDegree * place.second[k][1]);
+                    byUvTwice[k][2] = REAL(2 * kDegree * (toS[i] * toS[j]));
+                    byUvTwice[k][3] = REAL(kDegree * kDegree * (toS[i] * toT[j] + toS[j] * toT[i]));
+                    byUvTwice[k][4] = REAL(2 * kDegree * (toT[i] * toT[j]));
+                }
+            }
+        }
+    }
+
+    PatchCoordinate<REAL> const s;
+    PatchCoordinate<REAL> const t;
+    REAL shares[4]; ///< of the first point inside of each corner
+    /// Of the derivatives by s and t, but for factors of the degree; then of those by s twice, by both, and by t twice.
+    REAL byUv[2][2];
+    REAL byUvTwice[3][5];
+};
+
+/// \brief Writes the point of a patch, and its derivatives, in the order of EvaluatePlace(), by what the machine has.
+///
+/// \param points   the patch's
+/// \param results  the point, and its derivatives
+template <int NUM_DERIVATIVES, typename REAL>
+void SumUpPatch(PatchWeights<NUM_DERIVATIVES, REAL> const &weights, REAL const *points, int size,
+                std::ptrdiff_t stride, REAL *const *results);
+
+/// @name The same with some instructions, which the machine must have
+/// @{
+template <int NUM_DERIVATIVES, typename REAL>
+void SumUpPatchPortable(PatchWeights<NUM_DERIVATIVES, REAL> const &weights, REAL const *points,
+                        int size, std::ptrdiff_t stride, REAL *const *results);
+template <int NUM_DERIVATIVES, typename REAL>
+void SumUpPatchAvx2(PatchWeights<NUM_DERIVATIVES, REAL> const &weights, REAL const *points,
+                    int size, std::ptrdiff_t stride, REAL *const *results);
+/// @}
+
+} // namespace OpenSubdivHex::BfrExt::internal
+
+#endif
