@@ -2,9 +2,8 @@
 #ifndef OPENSUBDIVHEX_BFR_EXT_CELL_TREE_H
 #define OPENSUBDIVHEX_BFR_EXT_CELL_TREE_H
 
-#include "far_ext/faceShape.h"
-
 #include "far_ext/export.h"
+#include "far_ext/indexing.h"
 
 #include <cstddef>
 #include <cstdint>

@@ -14,7 +14,7 @@ using internal::TessellationData;
 
 namespace {
 
-// What set(data) makes; where it gives false, nothing.
+// Returns the data that set(data) fills; empty data where it returns false.
 template <typename SET>
 std::shared_ptr<TessellationData const> makeData(SET const &set) {
     auto data = std::make_shared<TessellationData>();

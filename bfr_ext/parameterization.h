@@ -3,7 +3,7 @@
 #define OPENSUBDIVHEX_BFR_EXT_PARAMETERIZATION_H
 
 #include "far_ext/export.h"
-#include "far_ext/faceShape.h"
+#include "far_ext/indexing.h"
 
 #include <opensubdiv/bfr/parameterization.h>
 
@@ -38,7 +38,7 @@ public:
     /// other faces are regular polygons with sides 1 long.  Take (u, v) there to weigh those of several points, as
     /// for a ray's hit in a facet: points of different sub-faces have no mean in (u, v).
     ///
-    /// Of a valid parameterization, and for finite numbers.  REAL is float or double.
+    /// For valid parameterizations and finite numbers.  REAL is float or double.
     /// @{
 
     /// Where \p uv lies in the plane.  (u, v) outside its sub-face is moved to the boundary of this.

@@ -445,7 +445,7 @@ CallStatus PatchStream<REAL>::checkRange(Index beginFace, Index endFace, bool *a
     return result;
 }
 
-// Of a stream of levels, these are written.
+// Writes the levels, in a stream of levels.
 template <typename REAL>
 CallStatus PatchStream<REAL>::checkFace(Index face, internal::FaceLevels &levels) const {
     CallStatus status = _factory.CheckFace(face);

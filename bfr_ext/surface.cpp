@@ -124,7 +124,7 @@ void Surface<REAL>::ComputePatchPoints(REAL patchPoints[], PointDescriptor const
     computePatchPoints(patchPoints, patchPointDesc, &patches);
 }
 
-// Of some patches, or of all.
+// Computes the points of some patches, or of all.
 template <typename REAL>
 void Surface<REAL>::computePatchPoints(REAL patchPoints[], PointDescriptor const &patchPointDesc,
                                        std::vector<int> const *patches) const {

@@ -27,7 +27,7 @@ using FarExt::internal::Level;
 
 namespace {
 
-// Of data of vertices.
+// Interpolations of data of vertices.
 constexpr int kNumInterpolations = 2;
 
 // Vertices with fewer faces have limit stencils, whatever their features.
@@ -98,7 +98,7 @@ struct SurfaceFactory::Types {
     internal::KeptFaces<internal::BaseType> mutable kept;
 };
 
-// Those that the cache has now, which are others when those before are full.
+// Returns the types that the cache has now: new ones when the ones before are full.
 auto SurfaceFactory::getTypes() const -> std::shared_ptr<Types const> {
     std::shared_ptr<Types const> before; // goes without the lock
     std::lock_guard<std::mutex> const lock(_mutex);
@@ -272,7 +272,7 @@ internal::CellType const *SurfaceFactory::findType(internal::CellTypes &types, i
     return &type;
 }
 
-// What a thread makes faces with: what it has taken of memory is kept for the next one.
+// A thread's means to make faces; their memory is kept for the next face.
 struct SurfaceFactory::FaceMaker {
     internal::PlainFaceGatherer gatherer;
     std::vector<Index> points; // of a face that is not plain

@@ -88,8 +88,9 @@ private:
 /// vertices in BfrExt are then those of this *surface level*
 /// (FarExt::HexSchemeOptions::GetSurfaceLevel()), GetLevel() says which, and control points are its
 /// vertices and values.  The refiner has to be refined so far, with full topology, and stays as it is;
-/// its evaluators make the control points.  GetFaceBaseFace() leads to the faces of level 0, with their materials.  A face of the level that an infinitely sharp crease crosses is
-/// two base faces: base faces and edges are FarExt::SurfaceFaces, which GetFaces() has.
+/// its evaluators make the control points.  GetFaceBaseFace() leads to the faces of level 0, with their materials.
+/// A face of the surface level that an infinitely sharp crease crosses is two base faces: GetFaces() has the numbers of
+/// base faces and edges.
 ///
 /// Holes have no surface, nor have the few faces that FaceHasLimitSurface() names and, with VTX_BOUNDARY_NONE, faces at a
 /// boundary, because such a boundary has no limit.
@@ -180,7 +181,7 @@ public:
     OpenSubdiv::Sdc::Options GetSchemeOptions() const { return _refiner.GetSchemeOptions(); }
     /// The surface level, whose faces have the surfaces: level 0, or level 1 behind a first step.
     FarExt::TopologyLevel const &GetLevel() const { return _level; }
-    /// Base faces and edges: those of that level, but for faces that are cut.
+    /// Base faces and edges: the faces and edges of GetLevel(), where faces that a crease cuts are two.
     FarExt::SurfaceFaces const &GetFaces() const { return _faces; }
     /// Base faces.
     int GetNumFaces() const { return _faces.GetNumFaces(); }

@@ -70,7 +70,7 @@ public:
                            [&](Vector3 const &outwards) { return Dot(outwards, d) > ball.radius; });
     }
 
-    /// The same of the hull of some points.
+    /// Whether the hull of some points is outside.
     bool IsOutside(double const *points, std::size_t stride, int numPoints) const {
         return std::any_of(_planes.begin(), _planes.end(), [&](Vector3 const &outwards) {
             int i = 0;

@@ -75,6 +75,42 @@ constexpr int GetHalfOfEdge(int local) { return local < kDiagonalEnd ? 1 : 0; }
 /// A face of \p numCorners corners that an edge made has two halves if it is a hexagon.
 constexpr bool HasHalves(int numCorners) { return numCorners == 6; }
 
+/// \brief The shape of a face that has a surface: a polygon, or half of one.
+///
+/// Hexagonal steps divide a polygon into *sectors*, one for each edge: the triangle of the edge and the centre.  The
+/// centre of half a polygon is the middle of its *long edge*, edge 0, along which the whole was cut: edge 0 has no
+/// sector.
+struct FaceShape {
+    /// A face of \p numVertices vertices.
+    constexpr FaceShape(int numVertices = 0, bool isHalfPolygon = false)
+        : size(numVertices), isHalf(isHalfPolygon) {}
+
+    /// The first edge that has a sector.
+    constexpr int GetFirstSector() const { return isHalf ? 1 : 0; }
+    /// The number of edges that have a sector.
+    constexpr int GetNumSectors() const { return size - GetFirstSector(); }
+    /// \brief The sector that begins at the line from the centre to a corner.
+    ///
+    /// At corner 0 of half a polygon no sector begins: the result is the last sector, which ends there.
+    constexpr int GetSectorOfCorner(int corner) const {
+        return isHalf && corner == 0 ? size - 1 : corner;
+    }
+
+    /// Whether two shapes are equal.
+    friend constexpr bool operator==(FaceShape const &a, FaceShape const &b) {
+        return a.size == b.size && a.isHalf == b.isHalf;
+    }
+    /// Whether two shapes differ.
+    friend constexpr bool operator!=(FaceShape const &a, FaceShape const &b) { return !(a == b); }
+    /// An order of shapes.
+    friend constexpr bool operator<(FaceShape const &a, FaceShape const &b) {
+        return a.size != b.size ? a.size < b.size : a.isHalf < b.isHalf;
+    }
+
+    int size;    ///< vertices
+    bool isHalf; ///< half a polygon
+};
+
 /// \brief The closed-form numbering of a child level in terms of its parent: see INDEXING.md.
 ///
 /// \code

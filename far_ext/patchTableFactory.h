@@ -2,7 +2,7 @@
 #ifndef OPENSUBDIVHEX_FAR_EXT_PATCH_TABLE_FACTORY_H
 #define OPENSUBDIVHEX_FAR_EXT_PATCH_TABLE_FACTORY_H
 
-#include "faceShape.h"
+#include "indexing.h"
 #include "topologyRefiner.h"
 
 #include <opensubdiv/far/patchTable.h>

@@ -3,7 +3,7 @@
 #define OPENSUBDIVHEX_FAR_EXT_SURFACE_FACES_H
 
 #include "export.h"
-#include "faceShape.h"
+#include "indexing.h"
 #include "status.h"
 
 #include <vector>
@@ -15,17 +15,24 @@ struct CrossedFace;
 struct Level;
 } // namespace internal
 
-/// \brief The *surface faces*, of which each has a surface, and their edges.
+/// \brief The *surface faces*, the faces that surfaces are made for, and their edges.
 ///
-/// They are the faces of the surface level (HexSchemeOptions::GetSurfaceLevel()), but for one that an infinitely sharp
-/// crease crosses, which FirstStep::Truncate makes of a vertex on the crease: it is *cut*, and its two halves are surface
-/// faces, half polygons (FaceShape) back to back.  So each has normals of its own along the crease.
+/// \code
+///     FarExt::SurfaceFaces const faces = factory->GetFaces(); // of a BfrExt::SurfaceFactory
+///     for (int face = 0; face < faces.GetNumFaces(); ++face) {
+///         int const firstVertex = faces.GetVertex(face, 0);
+///     }
+/// \endcode
 ///
-/// Half 0 has the number of the face that is cut; halves 1 follow all faces of the level, in the order of these.  The
-/// diagonals between halves follow all edges of the level, likewise, and run from vertex 0 of the face to
-/// TopologyLevel::GetFaceDiagonalEnd().  A mesh without such faces has the faces and edges of the level.
+/// Surface faces are the faces of the surface level (HexSchemeOptions::GetSurfaceLevel()), with one exception:
+/// FirstStep::Truncate makes a face of each vertex on a crease.  If the crease is infinitely sharp, this face is *cut*:
+/// its two halves are surface faces, half polygons (FaceShape) back to back, with normals of their own along the crease.
 ///
-/// It refers to the level.  Several threads may use it at once.  Arguments are not checked.
+/// Half 0 has the number of the cut face.  Halves 1 follow all faces of the level, in the order of the cut faces.  The
+/// diagonals between halves follow all edges of the level in the same order; they run from vertex 0 of the face to
+/// TopologyLevel::GetFaceDiagonalEnd().
+///
+/// The object refers to the level.  Several threads may use it at once.  Arguments are not checked.
 class OPENSUBDIVHEX_API SurfaceFaces {
 public:
     /// A face, an edge or a vertex.
@@ -47,7 +54,7 @@ public:
         int local;  ///< which edge of the face the edge is
     };
 
-    /// Those of a level, TopologyLevel::GetLevel(), which has full topology and must live as long.
+    /// The surface faces of a level, TopologyLevel::GetLevel(), which has full topology and must live as long.
     explicit SurfaceFaces(internal::Level const &level) : _level(&level) {}
 
     /// Surface faces, holes included.
@@ -70,7 +77,7 @@ public:
     int GetPlace(Index face, int local) const;
     /// Vertex \p local of a surface face.
     Index GetVertex(Index face, int local) const;
-    /// Edge \p local of a surface face, from its vertex \p local to the next: of half 0 or 1 of a cut face edge 0 is the
+    /// Edge \p local of a surface face, from its vertex \p local to the next.  Edge 0 of each half of a cut face is the
     /// diagonal.
     Edge GetEdge(Index face, int local) const;
     /// Side 0 of an edge, which runs as the edge does, or side 1.

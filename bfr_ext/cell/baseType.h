@@ -32,7 +32,7 @@ private:
     PlainFaceType const *_plain = nullptr;
 };
 
-/// What the surface of a base face is made of.
+/// The type and the points of a base face's surface.
 using BaseFace = KeptFace<BaseType>;
 
 } // namespace OpenSubdivHex::BfrExt::internal

@@ -17,7 +17,7 @@ BfrPlace makePlace(BasePoint const &point, PlanePlace const &place) {
 
 BfrPlace FindInSubFaces(Bfr::Parameterization const &parameterization, FaceShape shape,
                         Pair const &uv, double tolerance) {
-    // What is none lies in no sub-face.
+    // A place that is not a number lies in no sub-face.
     bool const isNone = std::isnan(uv[0]) || std::isnan(uv[1]);
     PlanePlace const place =
         isNone ? PlanePlace{{NAN, NAN}, {1, 0}, {0, 1}, {0, 0}} : FindInPlane(parameterization, uv);

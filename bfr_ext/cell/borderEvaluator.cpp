@@ -42,7 +42,7 @@ std::vector<double> makeEdgePoints(int level) {
     return points;
 }
 
-// Those of a rate, in the edge's own direction: 1 - i/rate would be rounded.
+// Returns the points of a rate, in the edge's own direction: 1 - i/rate would be rounded.
 std::vector<double> makeRatePoints(int rate) {
     std::vector<double> points;
     for (int i = 1; i < rate; ++i) {

@@ -8,8 +8,8 @@ namespace OpenSubdivHex::BfrExt::internal {
 
 namespace {
 
-// What lies between samples: of a quadratic surface up to a fifteenth of the range of heights, and of children, which
-// have fewer samples, mostly less than a quarter.
+// Margins for the surface between samples: a quadratic surface exceeds the range of heights by up to a fifteenth;
+// children, which have fewer samples, exceed it mostly by less than a quarter.
 constexpr double kFactorOfCell = 1.125;
 constexpr double kFactorOfChildren = 1.25;
 // Each step leaves a quarter of the thickness where the surface is smooth: with a margin, of the factors' size.

@@ -69,7 +69,7 @@ public:
     /// Adds a normal of the surface, of any length.
     void AddNormal(Vector3 const &ofSurface) { _areas.push_back(ofSurface); }
     CellFacing Make() const {
-        // What lies between the polygons, and what normals have in each of them.
+        // A margin for angles between the polygons, and for angles of normals within each.
         constexpr double kFactor = 3;
         CellFacing facing;
         double const length = GetLength(_sum);
@@ -103,8 +103,8 @@ private:
     Vector3 _sumOfPlaces = {};
 };
 
-/// \brief The same of the cells of a base face that views have asked for: first that of the face, and
-/// children of one cell one behind the other.
+/// \brief Measures of the cells of a base face that views have asked for: first the face itself; the
+/// children of a cell are consecutive.
 struct FaceMeasures {
     void Clear() {
         cells.clear();

@@ -54,8 +54,8 @@ public:
     };
     /// \brief Calls function(polygon) for all cells, with the vertices that others have on their sides.
     void ForEachCell(std::function<void(Polygon &)> const &function) const;
-    /// \brief The same polygons, where two halves of one hexagon that meet in nothing but its diagonal's
-    /// ends make one.
+    /// \brief Returns the polygons, with two halves of a hexagon merged into one where they share only the ends of
+    /// its diagonal.
     std::vector<Polygon> GetMergedPolygons() const;
 
 private:

@@ -198,7 +198,7 @@ CellPlan const &CellPlan::TakeApart(Node const &leaf) const {
     return *leaf.apart->plan;
 }
 
-// Of node 0, with the derivatives of its coordinates by u and v.
+// Adds a place of node 0, with the derivatives of its coordinates by u and v.
 void CellPlan::addPlace(LeafPlaces::Place place, Pair const (&toCoords)[2], int number) {
     Pair ofNode[2] = {toCoords[0], toCoords[1]};
     std::size_t node = 0;

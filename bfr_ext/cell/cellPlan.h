@@ -76,12 +76,11 @@ public:
         int depth;
         int numSteps; ///< that are left
         std::vector<std::size_t> children;
-        /// Of leaves, with the rows that are of places, ascending; a base face may have none.
+        /// For leaves: their places, and the rows that the plan's places have, ascending; a base face may have none.
         LeafPlaces const *leaf;
         std::vector<PlaceRun> runs;
-        /// Of u and v, the derivatives by them of what those of the leaf are by, which are the coordinates in a
-        /// half cell or its own u and v in a whole one; and the corners of cells that are no leaves, in plans for
-        /// derivatives and where no steps are left.
+        /// Derivatives of the leaf's coordinates by u and v: coordinates in a half cell, or the whole cell's own u and v.
+        /// Then the corners of cells that are no leaves, in plans for derivatives and where no steps are left.
         Pair toCoords[2];
         std::vector<CornerPlace> corners;
         std::shared_ptr<Apart> apart; ///< of leaves with steps left

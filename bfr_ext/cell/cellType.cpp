@@ -267,7 +267,7 @@ CellType::Derivatives CellType::findEarlierDerivatives(int corner) const {
     return derivatives;
 }
 
-// What find(type, corner) gives of the child that has the corner, by the coordinates of this cell.
+// Returns find(type, corner) of the child that has the corner, by the coordinates of this cell.
 //
 // turn(step, sum, result) turns a sum of the child's points to one of others.
 template <typename FIND, typename TURN>
@@ -373,7 +373,7 @@ std::vector<CellType::Corner> const &CellType::GetCorners() const {
 
 MemoryCount &CellType::GetMemory() const { return _types.GetMemory(); }
 
-// What is made with some rules besides the types of cells.
+// Data by rules, besides the types of cells.
 struct CellTypes::OfRules {
     struct Finder {
         explicit Finder(CellRules const &rules) : masks(rules.sdcOptions, rules.hexSchemeOptions) {}

@@ -142,7 +142,7 @@ public:
         bool isReversed;       ///< whether the edge runs against the face
         RingItem const *rings; ///< of its type; null where that has none
     };
-    /// \brief Of a base face, which neighbours have the same of: an edge, or behind these a vertex.
+    /// \brief Returns an item that a base face shares with its neighbours: an edge, or behind the edges a vertex.
     ///
     /// No lock is taken for what was asked for before.
     ///
@@ -200,9 +200,9 @@ public:
     /// As FindCornerLimits(), with what other cells found.
     std::vector<FarExt::internal::CornerLimit> FindLimits(FarExt::internal::CellPatch const &cell,
                                                           CellRules const &rules);
-    /// Those of plain base faces count even while nobody has asked for more of them.
+    /// The number of types.  Types of plain base faces count even while nobody has asked for more of them.
     std::size_t GetSize() const;
-    /// What all of this takes, but for the masks of FindLimits().
+    /// The memory of all this, without the masks of FindLimits().
     MemoryCount &GetMemory() { return _memory; }
 
 private:

@@ -81,7 +81,7 @@ void FaceEvaluator<REAL>::turnDerivatives(TessellationData const &tessellation,
 template <typename REAL>
 template <typename FUNCTION>
 void FaceEvaluator<REAL>::useBorder(FUNCTION const &function) const {
-    // What it has taken of memory is kept for the next face, as below.
+    // Its memory is kept for the next face, as below.
     static thread_local BorderEvaluator<REAL> border;
     auto const size = std::size_t(_pointDesc.size);
     if (PlainFaceType const *const plain = _face.type.GetPlain()) {
@@ -96,7 +96,7 @@ void FaceEvaluator<REAL>::useBorder(FUNCTION const &function) const {
 template <typename REAL>
 void FaceEvaluator<REAL>::evaluateLeaves(TessellationData const &tessellation, REAL *const *results,
                                          PointDescriptor const &resultDesc) const {
-    // What it has taken of memory is kept for the next face.
+    // Its memory is kept for the next face.
     static thread_local PatchEvaluator<REAL> evaluator;
     PlainFaceType const *const plain = _face.type.GetPlain();
     bool const isInLattice = _face.type.IsInLattice();
@@ -141,7 +141,7 @@ void FaceEvaluator<REAL>::evaluateTree(TessellationData const &tessellation, REA
     auto const write = [&](int place, int kind, double const *from) {
         std::copy(from, from + length, results[kind] + std::ptrdiff_t(place) * resultDesc.stride);
     };
-    // What they have taken of memory is kept for the next face.
+    // Their memory is kept for the next face.
     static thread_local RefinedCells cells;
     using Corners = std::vector<TessellationData::CellCorner>;
     auto const forEachCornerOf = [](int treeCell, Corners const &ofAll, auto const &function) {
@@ -234,7 +234,7 @@ void FaceEvaluator<REAL>::evaluateBorder(TessellationData const &tessellation,
     }
 }
 
-// Those on the border of the face, to the bit as all points of the face are evaluated.
+// Evaluates the places on the border of the face, to the bit as with all points of the face.
 template <typename REAL>
 void FaceEvaluator<REAL>::evaluateSectionBorder(TessellationData const &tessellation,
                                                 BorderEvaluator<REAL> &evaluator, REAL *p,

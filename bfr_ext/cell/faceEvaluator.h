@@ -38,12 +38,12 @@ public:
     FaceEvaluator(BaseFace const &face, REAL const *controlPoints, PointDescriptor const &pointDesc)
         : _face(face), _controlPoints(controlPoints), _pointDesc(pointDesc) {}
 
-    /// \brief Of a face of this size.
+    /// \brief Evaluates a tessellation of a face of this size.
     ///
     /// \param results  the points; by u, by v; by u twice, by u and v, by v twice; null from some kind on
     void Evaluate(TessellationData const &tessellation, REAL *const results[6],
                   PointDescriptor const &resultDesc) const;
-    /// \brief Of a face of this size.
+    /// \brief Evaluates a tessellation of Bfr of a face of this size.
     ///
     /// \param results  the points; by u, by v; both null where only points are wanted
     void Evaluate(OpenSubdiv::Bfr::Tessellation const &tessellation, REAL *const results[3],

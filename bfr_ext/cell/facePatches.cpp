@@ -86,7 +86,7 @@ std::vector<std::vector<double>> findRows(CellType const &type, int steps, Corne
     return rows;
 }
 
-// The same as a matrix, which all cells of the type have whose corners are as old.
+// Returns them as a matrix, which cells of the type share whose corners are as old.
 template <typename REAL>
 PlaceMatrix<REAL> const &getMatrix(CellType const &type, int steps, CornerAges const &ages,
                                    int numLevels) {
@@ -121,7 +121,7 @@ public:
         _patch += numPatches;
         return false;
     }
-    // Those that a matrix makes.
+    // Makes the patch points of a matrix.
     void SumUp(PlaceMatrix<REAL> const &matrix, REAL const *points, std::ptrdiff_t stride) {
         auto const numPatches = int(matrix.GetNumPlaces()) / kNumPatchPoints;
         PlaceSums<REAL> sums = {points,

@@ -27,7 +27,7 @@ public:
         Index first; ///< place
         int numFaces; ///< 0 where plain faces have no such vertex: at features, and of too few or too many faces
     };
-    /// What the gatherer goes through.
+    /// The arrays that the gatherer goes through.
     struct Arrays {
         std::vector<Next> nexts; ///< by place
         std::vector<Fan> fans;   ///< by vertex

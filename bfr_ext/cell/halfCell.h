@@ -84,14 +84,14 @@ public:
     /// @name Corners in any coordinates in which lines are straight, two numbers each
     /// @{
 
-    /// Of the half cell that a step makes at the edge of a sector, of a whole cell whose corners are so far from the
-    /// centre.
+    /// The corners of the half cell that a step makes at the edge of a sector of a whole cell, whose corners are
+    /// \p scale from the centre.
     template <typename PLACE, typename SCALE>
     static std::array<PLACE, 4> GetCornersAtEdge(SCALE scale) {
         SCALE const half = scale / 2;
         return {{{scale, 0}, {0, scale}, {0, half}, {half, 0}}};
     }
-    /// Of a child of a half cell.
+    /// The corners of a child of a half cell.
     template <typename PLACE>
     static std::array<PLACE, 4> GetCornersOfChild(std::array<PLACE, 4> const &corners,
                                                   std::size_t child) {

@@ -40,7 +40,8 @@ public:
                             refinement.GetVertexChildVertex(_corners.GetVertex(ring[0]))));
                     });
     }
-    // Of the F-vertices of all faces around a vertex: of itself, and of those of its F-face and of its two E-faces.
+    // Weights of the F-vertices of all faces around a vertex, for a vertex itself, and for those of its F-face and
+    // of its two E-faces.
     Weights const &FindFVertex(std::vector<int> const &ring) {
         return find(Kind::FVertex, getKey(ring),
                     [&](Refinement const &refinement, RefinementRules const &rules) {
@@ -53,8 +54,8 @@ public:
             return std::vector<double>(weights, weights + size);
         });
     }
-    // Of the E-face of the edge from a corner on, the faces beside it being those of that corner and of the
-    // one before it around the vertex.
+    // Weights for the E-face of the edge from a corner on; the faces beside the edge are the face of the corner and
+    // the face before it around the vertex.
     Weights const &FindHexagon(std::vector<int> const &ring, int corner, int before) {
         std::vector<int> key = getKey(ring);
         std::vector<int> ringOfNeighbor;

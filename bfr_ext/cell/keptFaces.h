@@ -28,7 +28,7 @@ struct KeptFace {
     Index const *GetPoints() const { return reinterpret_cast<Index const *>(this + 1); }
     Index const *GetTurns() const { return GetPoints() + numPoints; }
 
-    /// What it takes with so many points and turns, in bytes.
+    /// Its bytes, with \p count points and turns.
     static std::size_t GetMemory(std::size_t count) {
         return sizeof(KeptFace) + count * sizeof(Index);
     }

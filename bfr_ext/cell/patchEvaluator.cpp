@@ -101,8 +101,8 @@ PlaceMatrix<REAL> makeDerivatives(RingCell const &cell, GET const &getRow) {
     return matrix;
 }
 
-// Of a child beside an edge of a face: the derivatives that the face has at the start of the edge, by the
-// coordinates in the edge's sector.
+// Returns the derivatives of a face at the start of an edge, by the coordinates in the edge's sector, from the
+// points of the child beside the edge.
 template <typename REAL>
 PlaceMatrix<REAL> const &getFaceDerivatives(RingCell const &child) {
     constexpr int kKind = PatternTable::GetKind<REAL>(PatternOf::FaceCorner);
@@ -116,7 +116,7 @@ PlaceMatrix<REAL> const &getFaceDerivatives(RingCell const &child) {
     });
 }
 
-// Of a child that is evaluated behind another step: its own at a corner.
+// Returns the derivatives of a child at its own corner; the child is evaluated behind another step.
 template <typename REAL>
 PlaceMatrix<REAL> const &getCornerDerivatives(RingCell const &child, int corner) {
     constexpr int kKind = PatternTable::GetKind<REAL>(PatternOf::ChildCorner);

@@ -145,7 +145,7 @@ bool findInPatch(CellPatch const &part, int firstCorner, CellPatch const &all, i
     std::vector<int> found(patch.faceVerts.size(), kNone); // by corner
     std::vector<int> ofVerts(all.patch.sources.size(), kNone);
     verts.assign(patch.sources.size(), kNone);
-    // Of a face, from one of its corners on.
+    // Adds the vertices of a face, from one of its corners on.
     auto const add = [&](int corner, int cornerOfAll) {
         int const size = corners.GetFaceSize(corner);
         for (int i = 0; i < size; ++i) {
@@ -344,7 +344,7 @@ bool PlainFaceGatherer::areDistinct(Index const *points, int numPoints) {
     return std::adjacent_find(sorted, sorted + numPoints) == sorted + numPoints;
 }
 
-// Those of a patch whose vertices differ as the key says.
+// Writes the points of a patch whose vertices differ as the key says.
 void PlainFaceGatherer::writePoints(PlainFaceType const &type, Index *points) const {
     for (int i = 0; i < _numVerts; ++i) {
         *points++ = _verts[i].vert;

@@ -63,7 +63,7 @@ public:
     std::size_t const hash; ///< of the key
 
     bool HasKey(PlainFaceKey const &key) const;
-    /// Of the key and the points.
+    /// Bytes of the key and the points.
     std::size_t GetSizeOfBytes() const { return _keySize + std::size_t(_numRuns) * sizeof(Run); }
     int GetNumPoints() const { return _numVerts + _numOthers; }
     /// The points behind the vertices whose faces are all there.
@@ -76,8 +76,8 @@ public:
         return type ? *type : make();
     }
     bool IsInLattice() const { return _isInLattice; }
-    /// What evaluates tessellations of those that are not in a lattice, and is made in a fraction of the
-    /// time and memory.
+    /// Rings, which evaluate tessellations of faces that are not in a lattice.  They take a fraction of the time and
+    /// memory of types.
     FaceRings const &GetRings() const {
         FaceRings const *const rings = _rings.load(std::memory_order_acquire);
         return rings ? *rings : makeRings();

@@ -35,10 +35,10 @@ private:
 
 /// \brief Evaluates a Bfr::Tessellation, with rates of segments, of a base face that a BorderEvaluator has.
 ///
-/// That makes the points on the border.  All else has dense matrices: of the places inside, one for each pair of
-/// inner rates, and of derivatives on an edge one for each rate.  So tessellations with other rates on the edges
-/// share that of the inside.  The type of the face keeps them, or of a plain face that is not in a lattice, those of
-/// its children, which are few.  Matrices stand in blocks of places, and where there are many blocks, they are
+/// BorderEvaluator makes the points on the border.  Other results have dense matrices: one for each pair of inner
+/// rates for the places inside, and one for each rate for derivatives on an edge.  So tessellations with other rates
+/// on the edges share the matrix of the inside.  The type of the face keeps the matrices; for a plain face that is
+/// not in a lattice, the types of its children do, which are few.  Matrices stand in blocks of places, and where there are many blocks, they are
 /// made each time and not kept.
 template <typename REAL>
 class RateEvaluator {
@@ -66,7 +66,7 @@ private:
         std::ptrdiff_t stride;
         int const *indices; // by column, null: all in turn
     };
-    // Of places, by row: of the points, or of the derivatives by u and v.
+    // Matrices with a row for each place: for the points, or for the derivatives by u and v.
     struct Matrices {
         std::size_t GetHeapSize() const { return GetHeapSizes(matrices, runs); }
 

@@ -12,7 +12,7 @@ namespace OpenSubdivHex::BfrExt::internal {
 /// \brief Vertices that a step makes as sums of the points of rings, in the order of the rings.
 class RingPlaces {
 public:
-    /// Of none.
+    /// Has no places.
     RingPlaces() = default;
     /// \param verts  of the level that the step makes
     /// \param rings  which have all of these, the first one its vertex
@@ -78,7 +78,7 @@ private:
 /// \brief A product of the first step of a plain base face: one of its cells, or the long edge of one of its
 /// edges, or one of its V-vertices, the points of which are points of rings.
 ///
-/// What these are the rings tell, and so the sizes of some faces: there are far fewer of them than types of
+/// Rings, and so the sizes of some faces, identify them: there are far fewer of them than types of
 /// base faces.
 ///
 /// Where rings have a second step, the masks of cells behind the first one depend on all neighbours of the
@@ -100,8 +100,8 @@ public:
         : _type(type), _lastStep(RingStep::Second), _isInner(true), _points(std::move(points)),
           _inner(std::move(inner)), _patterns(type.GetMemory()) {}
 
-    /// Of an inner cell that of any other one that is the same behind the step: nothing before it is the
-    /// cell's own but the order of rows.
+    /// An inner cell may have the type of another one that is equal behind the step: before the step, only the
+    /// order of rows is the cell's own.
     CellType const &GetType() const { return _type; }
     /// All that a cell is but its type.
     std::vector<int> GetKey() const;
@@ -109,7 +109,7 @@ public:
     bool IsInner() const { return _isInner; }
     /// The step that makes what its sums are of.
     RingStep GetLastStep() const { return _lastStep; }
-    /// What these are.
+    /// The places of the cell's points.
     RingPlaces const &GetPlaces() const { return _isInner ? _inner : _points; }
     std::vector<int> const &GetColumns() const { return GetPlaces().GetColumns(); }
     /// The points of the type.
@@ -197,8 +197,8 @@ public:
         return find<RingFace>(_faces, 0, key, make);
     }
 
-    /// \brief What make() gave first of a kind of items in the lattice of a size of faces: mostly all look like
-    /// it.
+    /// \brief Returns the first result of make() for a kind of items in the lattice of a size of faces: mostly all
+    /// look like it.
     template <typename MAKE>
     LatticeItem const &FindLatticeItem(FarExt::internal::CellKind kind, int faceSize,
                                        MAKE const &make) {
@@ -234,7 +234,7 @@ struct RingItem {
     VertexRings rings;              ///< of the start of the edge and of its end, or of the vertex
     RingCell const *cell = nullptr; ///< null where the edge or vertex is in a lattice, or not plain
 
-    /// That of a type, which \p patch is of.
+    /// Returns the item of a type; \p patch is of this type.
     static RingItem const &Get(CellType const &type, FarExt::internal::CellPatch const &patch,
                                RingCells &cells);
 };

@@ -115,7 +115,7 @@ std::vector<RingLayout> FindInnerLayouts(LimitPatch const &patch,
                 layout.verts.push_back(made.FindFVertex(verts[i], verts[(i + 1) % size]));
             }
         };
-        // Of a face: the neighbour where it begins, and its F-vertices.
+        // The block of a face: the neighbour where it begins, and its F-vertices.
         int const *block = ring.verts.data();
         int sizeBefore = ring.faceSizes.back();
         int const *before = &ring.verts.back() - sizeBefore;

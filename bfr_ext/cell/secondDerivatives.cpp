@@ -18,7 +18,7 @@ constexpr std::size_t kNumCorners = std::size(HalfCell::kCorners);
 
 // Each makes what is left half as large.
 constexpr int kNumRounds = 60;
-// Of weights, which are at most some hundred; more is left where the rows do not converge.
+// A bound of errors in weights, which are at most some hundred; rows that do not converge exceed it.
 constexpr double kRowTolerance = 1e-9;
 
 double dotRows(Row const &a, Row const &b) {

@@ -2,7 +2,7 @@
 #ifndef OPENSUBDIVHEX_BFR_EXT_CELL_SECTORS_H
 #define OPENSUBDIVHEX_BFR_EXT_CELL_SECTORS_H
 
-#include "far_ext/faceShape.h"
+#include "far_ext/indexing.h"
 
 namespace OpenSubdivHex::BfrExt::internal {
 

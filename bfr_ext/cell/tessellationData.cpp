@@ -146,7 +146,7 @@ private:
             if (!isRestFlat(ear)) {
                 return ear;
             }
-            // What is cut later shortens the line, and leaves a line.
+            // Later cuts shorten the line, and leave a line.
             _isKept[ear] = true;
             setQuality(ear, 0);
         }
@@ -156,7 +156,7 @@ private:
     static constexpr double kLeastQuality = 1e-9;
 
     std::vector<double> const &_coords;
-    // Of the polygon that is cut, by its corners as they were given.
+    // The polygon that is cut, by its corners as they were given.
     std::vector<int> const *_polygon = nullptr;
     std::size_t _first = 0; // of those that are left
     std::vector<std::size_t> _prev;
@@ -209,7 +209,7 @@ bool TessellationData::SetSection(FaceSections const &sections, int number,
     section = Section{number, sections.GetNumSections(), {}};
     CellShape shape = {};
     CellTree cells = sections.MakeTree(number, &shape);
-    // Those that it has a side on.
+    // The edges that it has a side on.
     std::vector<Polyline> edges(static_cast<std::size_t>(size));
     std::vector<int> const polygon = sections.GetPolygon(number);
     for (std::size_t i = 0; i < polygon.size(); ++i) {
@@ -404,7 +404,7 @@ bool TessellationData::setCells(CellMesh const &mesh) {
     return setFacets(mesh, setPlaces(mesh, order));
 }
 
-// What the polygons of a section have: the mesh has more beside it.
+// Sets the places of a section's polygons; the mesh has more beside them.
 bool TessellationData::setSectionCells(CellMesh const &mesh, FaceSections const &sections) {
     std::vector<int> const polygon = sections.GetPolygon(section->number);
     std::vector<int> order;
@@ -415,7 +415,7 @@ bool TessellationData::setSectionCells(CellMesh const &mesh, FaceSections const 
         int const first = int(order.size());
         firstEdgeCoords.push_back(first);
         order.push_back(mesh.Find(start.sector, {start.a, start.b}));
-        // Of two vertices in different sectors, one lies on the line between these.
+        // If two vertices lie in different sectors, one of them lies on the line between the sectors.
         int const size = GetFaceSize();
         if (start.sector == end.sector) {
             mesh.AppendBetween(start.sector, {start.a, start.b}, {end.a, end.b}, order);
@@ -480,7 +480,7 @@ bool TessellationData::setFacets(CellMesh const &mesh, std::vector<int> const &p
         facetLevels.push_back(level);
         maxFacetSize = std::max(maxFacetSize, numVerts);
     };
-    // What Euler says of triangles; quads and polygons are fewer.
+    // The number of triangles by Euler's formula; quads and polygons are fewer.
     std::size_t const numTriangles =
         2 * std::size_t(GetNumCoords()) - std::size_t(GetNumBoundaryCoords()) - 2;
     if (areTooMany(double(numTriangles))) {

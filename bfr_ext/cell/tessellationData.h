@@ -16,8 +16,8 @@
 
 namespace OpenSubdivHex::BfrExt::internal {
 
-/// \brief What a LevelTessellation is made of, which its copies share: places, facets between them, and what a
-/// Surface needs to evaluate the places, made when it is first asked for.
+/// \brief The data of a LevelTessellation, which its copies share: places, facets between them, and the plans by
+/// which a Surface evaluates the places, made when they are first needed.
 ///
 /// Nothing is changed after a function Set...(): any number of threads may use it then.
 class TessellationData {
@@ -29,7 +29,7 @@ public:
         int count;
         int place;
     };
-    /// What the tessellation of a section has besides.
+    /// Further data of the tessellation of a section.
     struct Section {
         int number;
         int count; ///< of the face
@@ -47,7 +47,7 @@ public:
         int corner;
         int place;
     };
-    /// What the tessellation of a tree has besides.
+    /// Further data of the tessellation of a tree.
     struct Tree {
         CellTree cells;
         std::vector<Polyline> edges;
@@ -72,7 +72,7 @@ public:
     int GetNumBoundaryCoords() const {
         return firstEdgeCoords.empty() ? 0 : firstEdgeCoords.back();
     }
-    /// That of which an edge has the polyline; -1: none.
+    /// The level whose polyline an edge has; -1: none.
     int GetEdgeLevel(std::size_t edge) const {
         return tree ? tree->edgeLevels[edge]
                     : FaceSections::GetEdgeLevel(GetFaceShape(), int(edge), levels[edge]);
@@ -114,7 +114,7 @@ public:
     int maxFacetSize = 0;
 
 private:
-    // Of faces that are in no lattice and of those that are, each of points and of derivatives.
+    // Plans [is the face in a lattice][are they for derivatives].
     struct CellPlans {
         std::once_flag once[2][2];
         std::unique_ptr<CellPlan const> plans[2][2];

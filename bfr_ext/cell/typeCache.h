@@ -20,7 +20,7 @@ public:
     explicit TypeCache(std::size_t maxMemory) : _maxMemory(maxMemory) {}
 
     std::size_t GetMaxMemory() const { return _maxMemory; }
-    /// What all types take, with those that surfaces still have.
+    /// The bytes of all types, those that only surfaces still have among them.
     std::size_t GetMemory() const { return *_memory; }
     /// Whether some types take so much that the cache begins anew.
     bool IsFull(CellTypes &types) const { return types.GetMemory().Get() > _maxMemory / 2; }

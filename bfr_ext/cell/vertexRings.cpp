@@ -235,7 +235,7 @@ private:
     Scratch &_scratch;
     int const _zero; // the point behind those of the patch
     bool _isInRange = true;
-    // Of the ring that is added: the size of its first face, and whether it is in a lattice so far.
+    // The ring that is added: the size of its first face, and whether it is in a lattice so far.
     int _latticeSize = 0;
     bool _isInLattice = false;
 };

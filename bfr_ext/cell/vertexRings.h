@@ -61,7 +61,7 @@ public:
 private:
     using Number = std::uint16_t;
 
-    // What Apply() does is a program of numbers.  Of each ring it has a header and then its faces; a face has
+    // Apply() runs a program of numbers.  Each ring has a header and then its faces; a face has
     // a header, its vertices behind that of the ring, and the V-vertex of the neighbour where the face begins,
     // which is the first of these vertices; a V-vertex has a header and runs of points that have one weight;
     // and a run has a header and its points.  These are the places in the headers.

@@ -55,7 +55,7 @@ struct PatchPlan {
         return size;
     }
 
-    /// The same for each place, of triangles: of the plan, and of what the tessellation is made of.
+    /// Bytes of each place, where facets are triangles: in the plan, and in the tessellation's data.
     static constexpr std::size_t GetBytesOfPlace(bool hasDerivatives) {
         return kBytesOfCoord + 8 * sizeof(int) + 2 * sizeof(int) + (hasDerivatives ? 300 : 160);
     }

@@ -2,7 +2,7 @@
 #ifndef OPENSUBDIVHEX_FAR_EXT_PATCH_PATCH_CELLS_H
 #define OPENSUBDIVHEX_FAR_EXT_PATCH_PATCH_CELLS_H
 
-#include "far_ext/faceShape.h"
+#include "far_ext/indexing.h"
 #include "far_ext/vtr/hierarchy.h"
 
 #include <functional>

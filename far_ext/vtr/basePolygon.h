@@ -4,7 +4,7 @@
 
 #include "pi.h"
 
-#include "far_ext/faceShape.h"
+#include "far_ext/indexing.h"
 
 #include <algorithm>
 #include <array>

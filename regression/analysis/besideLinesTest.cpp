@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// What borders do to curvature, beside Catmull-Clark and Loop.
+// Curvature beside borders, compared with Catmull-Clark and Loop.
 #include "besideLines.h"
 
 #include <gtest/gtest.h>

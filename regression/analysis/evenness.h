@@ -21,7 +21,7 @@ enum class Curvature { Mean, Gaussian };
 double MeasureUnevenness(PolygonMesh const &mesh, std::vector<int> const &vertices,
                          std::vector<int> const &groups, Curvature curvature = Curvature::Mean);
 
-/// What that is the norm of, by entry of \p vertices.
+/// The deviations whose norm that is, by entry of \p vertices.
 Eigen::VectorXd MeasureDeviations(PolygonMesh const &mesh, std::vector<int> const &vertices,
                                   std::vector<int> const &groups, Curvature curvature);
 
@@ -37,10 +37,10 @@ struct VertexGroups {
     std::vector<int> groups;
 };
 
-/// Those of a refined MakeTorus(numU, ...) that MeasureTorusUnevenness looks at.
+/// The vertices of a refined MakeTorus(numU, ...) that MeasureTorusUnevenness measures.
 VertexGroups FindTorusSector(PolygonMesh const &mesh, int numU);
 
-/// Those beside a line around the axis that MeasureTorusStrips() looks at in its strip \p strip.
+/// The vertices beside a line around the axis that MeasureTorusStrips() measures in its strip \p strip.
 VertexGroups FindTorusStrip(PolygonMesh const &mesh, int numU, double line, double rowWidth,
                             int strip);
 
@@ -48,8 +48,8 @@ VertexGroups FindTorusStrip(PolygonMesh const &mesh, int numU, double line, doub
 /// that look alike, in groups of the same angle around the tube, 128 to a turn.
 double MeasureTorusUnevenness(PolygonMesh const &mesh, int numU);
 
-/// \brief The same beside a sharp line that runs around the axis: for each of some strips that follow
-/// one another, each as wide as a row of faces of the control mesh.
+/// \brief Measures unevenness beside a sharp line that runs around the axis: for some consecutive strips,
+/// each as wide as a row of faces of the control mesh.
 ///
 /// The first strip begins at an eighth of a row from the line, so that curvature is not estimated
 /// across it.
@@ -63,7 +63,7 @@ std::vector<double> MeasureTorusStrips(PolygonMesh const &mesh, int numU, double
 /// MakeTorus() with an infinitely sharp crease around the axis, along the outermost line.
 Shape MakeCreasedTorus(int numU, int numV, TorusFaces faces);
 
-/// The same without the row of faces above the outermost line, which is a border then.
+/// MakeTorus() without the row of faces above the outermost line, which is a border then.
 Shape MakeOpenTorus(int numU, int numV, TorusFaces faces);
 
 /// The regular tetrahedron, octahedron and icosahedron: triangles, 3, 4 and 5 at a vertex.

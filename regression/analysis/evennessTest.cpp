@@ -19,7 +19,7 @@ using FarExt::HexSchemeOptions;
 namespace Sdc = OpenSubdiv::Sdc;
 
 constexpr int kLevel = 5;
-/// Of what grows with the level, since there are ever finer ripples around quads and irregular vertices.
+/// Levels for measures that grow with the level: around quads and irregular vertices there are ever finer ripples.
 constexpr int kFineLevel = 6;
 constexpr int kFinestLevel = 7;
 constexpr double kDigits = 1e-4;
@@ -177,7 +177,7 @@ TEST(Evenness, QuadsTruncatedFirst) {
               5 * measureTorus(14, 8, TorusFaces::Quads, HexSchemeOptions{FaceMask::Smooth}));
 }
 
-// What the masks around irregular vertices and beside quads are for.
+// Surfaces without the masks around irregular vertices and beside quads: the reason for these masks.
 TEST(Evenness, OneMaskForAllHexagons) {
     Shape const torus = MakeTorus(14, 8, TorusFaces::Quads);
     double const uneven = MeasureTorusUnevenness(RefineWithOneMask(torus, kLevel).back().mesh, 14);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// What two steps do around a vertex of a sharp line: in a sector of a border, at a corner, at the end of a crease.
+// The eigenvalues of two steps around a vertex of a sharp line: in a sector of a border, at a corner, at the end of a crease.
 #include "far_ext/primvarRefiner.h"
 #include "far_ext/topologyRefinerFactory.h"
 #include "regression/shapes/shapeDescriptor.h"

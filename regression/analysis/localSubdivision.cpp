@@ -126,7 +126,7 @@ double findTurn(FarExt::SchemeType scheme, FarExt::TopologyLevel const &level, M
     return edge - 0.5;
 }
 
-/// \brief Of a center and its child in the next level.
+/// \brief Makes the matrix of a center and its child in the next level.
 ///
 /// \param getWeights  by vertex of \p cLevel: vertices of \p level and their weights, as pairs
 template <class LEVEL, typename GET_WEIGHTS>

@@ -53,10 +53,10 @@ struct LocalSubdivision {
 LocalSubdivision MakeLocalSubdivision(FarExt::HexSchemeOptions const &schemeOptions,
                                       CenterKind baseKind, int order);
 
-/// Of a child vertex: vertices of its parent level, each with its weight.
+/// The row of a child vertex: vertices of its parent level, each with its weight.
 using ChildRow = std::vector<std::pair<int, double>>;
 
-/// \brief The same of a mesh that is refined already, around \p center of level \p depth, with rows of the
+/// \brief Overload for a mesh that is refined already, around \p center of level \p depth, with rows of the
 /// caller's.
 ///
 /// \param getRow  called with vertices of the next level, which has full topology
@@ -64,7 +64,7 @@ LocalSubdivision MakeLocalSubdivision(FarExt::TopologyRefiner const &refiner, in
                                       MeshCenter center,
                                       std::function<ChildRow(int)> const &getRow);
 
-/// \brief The same of one of OpenSubdiv's schemes, Catmull-Clark or Loop, around a vertex, by Far's
+/// \brief Overload for one of OpenSubdiv's schemes, Catmull-Clark or Loop, around a vertex, by Far's
 /// primvar refiner.
 ///
 /// \param order  3 or more

@@ -40,7 +40,7 @@ constexpr double kParts = 256;
 constexpr int kNumSearchedLevels = FarExt::kNumStepsToConstantMasks - 1;
 constexpr int kNumFacesOfQuads = 4; // around a regular vertex
 
-/// Of one of the first levels, from 1 on.
+/// Weights of one of the first levels, from 1 on.
 struct LevelWeights {
     double atVertex[kHexagon];
     double atNeighbor[kHexagon];

@@ -31,13 +31,13 @@ struct SearchedMasks {
 /// what they are at all levels.
 using MaskWeights = Eigen::VectorXd;
 
-/// Those that the library has.
+/// The weights that the library has.
 MaskWeights GetShippedWeights(SearchedMasks const &searched);
 
 /// The masks of later levels, but for what is not free in those of the first: where a search begins.
 MaskWeights GetPlainWeights(SearchedMasks const &searched);
 
-/// \brief What a search makes small: how uneven curvature is on some surfaces, as a function of weights.
+/// \brief The measure that a search makes small: how uneven curvature is on some surfaces, as a function of weights.
 ///
 /// For quads mean curvature along the parallels of three tori; and, as smaller parts, of the first two rows
 /// beside the border of the same tori without a row, and of bowls, and Gaussian curvature of saddles, whose

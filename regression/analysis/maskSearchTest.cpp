@@ -22,7 +22,7 @@ TEST(MaskSearch, JudgesTheLibrary) {
     PolygonMesh const torus =
         RefineSurface(MakeTorus(14, 8, TorusFaces::Quads), smooth, kLevel).back().mesh;
     EXPECT_NEAR(judge.GetEntries()[0].unevenness, MeasureTorusUnevenness(torus, 14), 1e-12);
-    // Those of the library are rounded: none is searched for again.
+    // The library's weights are rounded: none is searched for again.
     EXPECT_EQ(RoundWeights(GetShippedWeights(kOfQuads), 0, judge), GetShippedWeights(kOfQuads));
     constexpr int kNumWeights = 27;
     EXPECT_EQ(GetShippedWeights(kOfQuads).size(), kNumWeights);

@@ -16,11 +16,11 @@ struct MeshCenter {
     int index = -1; ///< -1: none is looked at
 };
 
-/// What \p center of \p level becomes in the next level, \p cLevel: V-vertex, V-face or F-face.
+/// The child of \p center of \p level in the next level, \p cLevel: V-vertex, V-face or F-face.
 MeshCenter FindChild(MeshCenter center, FarExt::TopologyLevel const &level,
                      FarExt::TopologyLevel const &cLevel);
 
-/// The same in a refiner of Far, by Catmull-Clark or, of vertices alone, by Loop: always a vertex.
+/// Overload for a refiner of Far, by Catmull-Clark or, of vertices alone, by Loop: always a vertex.
 MeshCenter FindChild(MeshCenter center, OpenSubdiv::Far::TopologyLevel const &level,
                      OpenSubdiv::Far::TopologyLevel const &cLevel);
 

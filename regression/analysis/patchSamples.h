@@ -43,7 +43,7 @@ public:
     std::vector<Vector> MakePoints(std::vector<int> const &sizes, std::vector<int> const &indices,
                                    std::vector<double> const &weights) const;
 
-    /// Of all places, for the local points.
+    /// Measures the errors at all places, for the local points.
     std::vector<Error> Measure(std::vector<Vector> const &points) const;
 
 private:

@@ -80,7 +80,7 @@ QuadMasks getShippedMasks() {
     return masks;
 }
 
-/// What is computed with at once: x, y, and what x and y are lifted to.
+/// Columns that are computed at once: x, y, and the lifts of x and y.
 constexpr int kNumColumns = 5;
 using Points = Eigen::Matrix<double, Eigen::Dynamic, kNumColumns, Eigen::RowMajor>;
 
@@ -524,7 +524,7 @@ public:
         return Eigen::Map<Eigen::VectorXd const>(values.data(), Eigen::Index(values.size()));
     }
 
-    /// What the weights leave to 1, where that is below 0.
+    /// The difference of 1 and the sum of the weights, where it is below 0.
     Eigen::VectorXd MeasureRest(QuadMasks masks) const {
         constexpr double kOfNegative = 10;
         std::vector<double> values;

@@ -40,7 +40,7 @@ public:
     /// others the rows of four with the same paths.
     Eigen::VectorXd GetStart() const;
 
-    /// What a search makes small.
+    /// The measure that a search makes small.
     Eigen::VectorXd Measure(Eigen::VectorXd const &weights) const;
 
     /// How uneven a surface is.

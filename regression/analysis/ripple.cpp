@@ -19,7 +19,7 @@ double const kPi = std::acos(-1.0);
 /// Rings of control faces: curvature up to the distance 1 does not know where the mesh ends.
 constexpr int kNumControlRings = 3;
 
-/// Of the control points, so that slopes do not matter.
+/// The height of the control points, so small that slopes do not matter.
 constexpr double kHeight = 1e-3;
 
 int countRegularSectors(Tiling tiling) {

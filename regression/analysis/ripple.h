@@ -28,7 +28,7 @@ Shape MakeVertexDisk(Tiling tiling, int valence, int numRings, DiskPart part = D
 /// \throws std::runtime_error  where there are none
 std::vector<int> FindRing(PolygonMesh const &mesh, int ring);
 
-/// What the control points of a mesh are lifted to: x^2 + y^2, or x^2 - y^2.
+/// The function that lifts the control points of a mesh: x^2 + y^2, or x^2 - y^2.
 enum class Quadratic { Elliptic, Hyperbolic };
 
 /// \brief How uneven curvature is around a vertex of \p valence, ring by ring.

@@ -24,7 +24,7 @@ HexSchemeOptions const kTruncate{FaceMask::Smooth, SchemeType::Hexagonal, FirstS
 constexpr int kLevel = 5;
 constexpr int kNumRings = 2;
 
-/// Of both rings the larger.
+/// The larger one of both rings.
 double measureRipple(Tiling tiling, int valence, AnyScheme const &scheme, Quadratic quadratic) {
     std::vector<double> const rings =
         MeasureRipple(tiling, valence, scheme, quadratic, kNumRings, kLevel);

@@ -152,7 +152,7 @@ void addDoublets(Shape &shape, int distance) {
     shape.faceVertices = verts;
 }
 
-// What the patches of one mesh are like for given constants.
+// The errors of one mesh's patches, for given constants.
 class Fit {
 public:
     // A share of 1 is that of a mesh like others.
@@ -328,7 +328,7 @@ public:
         }
     }
 
-    // Those that are no defaults.
+    // Prints the constants that are no defaults.
     void Print() const {
         Eigen::VectorXd const apart = _values - getShipped();
         std::printf(

@@ -18,7 +18,7 @@ struct Smoothness {
     double maxCurvature = 0;
 };
 
-/// Of all interior edges of \p mesh.  A face's normal is that of its vector area.
+/// Measures all interior edges of \p mesh.  A face's normal is that of its vector area.
 Smoothness MeasureSmoothness(PolygonMesh const &mesh);
 
 /// The vertices of the faces that touch \p vertex or a neighbour of it, \p vertex first.
@@ -26,8 +26,8 @@ std::vector<int> FindNearVertices(PolygonMesh const &mesh, int vertex);
 
 /// \brief The principal curvatures of a mesh near one of its vertices, the smaller first.
 ///
-/// Those, at the vertex, of the quadratic that fits best the FindNearVertices(), over the plane through the
-/// vertex whose normal is the mean of those of its faces.
+/// Principal curvatures at the vertex of the quadratic that fits the FindNearVertices() best, over the plane through
+/// the vertex whose normal is the mean of its faces' normals.
 std::array<double, 2> EstimateCurvatures(PolygonMesh const &mesh, int vertex);
 
 /// \brief The largest modulus of a principal curvature at the vertices of the faces that touch the

@@ -52,12 +52,12 @@ std::vector<SurfaceLevel> RefineSurface(Shape const &shape, AnyScheme const &sch
                                         MeshCenter center = MeshCenter(),
                                         OpenSubdiv::Sdc::Options sdcOptions = {});
 
-/// \brief The same with FaceMask::Smooth where its masks around irregular vertices and beside quads are
-/// not there: all hexagons without something sharp have one mask.  Shows what those are for.
+/// \brief Refines with FaceMask::Smooth, but without its masks around irregular vertices and beside quads:
+/// all hexagons without something sharp have one mask.  Shows the effect of these masks.
 std::vector<SurfaceLevel> RefineWithOneMask(Shape const &shape, int maxLevel,
                                             OpenSubdiv::Sdc::Options sdcOptions = {});
 
-/// The same of a refiner of that shape which has been refined, in full, in another way.
+/// The levels of a refiner of that shape which has been refined, in full, in another way.
 std::vector<SurfaceLevel> MakeSurfaceLevels(FarExt::TopologyRefiner const &refiner,
                                             Shape const &shape, MeshCenter center = MeshCenter());
 

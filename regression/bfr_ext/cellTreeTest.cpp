@@ -101,7 +101,7 @@ std::optional<unsigned> findNumRounds() {
                 : std::nullopt;
 }
 
-/// That number, or so many forests that they have 200 trees together, two at least.
+/// The number of rounds: so many forests that they have 200 trees together, two at least.
 unsigned getNumRounds(Shape const &shape) {
     constexpr int kNumTrees = 200;
     int const numFaces = std::max(1, shape.GetNumFaces());
@@ -322,7 +322,7 @@ TEST(CellForest, PolygonsAreThoseOfTheReference) {
 
 namespace {
 
-/// What became of the facets of random forests.
+/// Counts of the facets of random forests.
 struct ForestCounts {
     /// Expects that no more of them than some shares are turned over, which are those of the trees that
     /// there are by default.

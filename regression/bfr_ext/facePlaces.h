@@ -53,7 +53,7 @@ inline FacePlace FromPlane(int faceSize, FacePlace const &coords) {
     return MakeFacePlace(faceSize, best, std::max(inBest[0], 0.0), std::max(inBest[1], 0.0));
 }
 
-/// The same of many.
+/// Overload for many places.
 inline std::vector<double> ToPlane(int faceSize, std::vector<double> coords) {
     for (std::size_t i = 0; i < coords.size(); i += 2) {
         FacePlace const place = ToPlane(faceSize, &coords[i]);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// What surfaces of faces are made of, kept from the second time on, and surfaces that are made of it.
+// Data of faces that are kept from their second surface on, and surfaces made of them.
 #include "surfaceFixture.h"
 
 #include "bfr_ext/cell/keptFaces.h"
@@ -26,7 +26,7 @@ constexpr std::size_t kEnough = 1 << 20;
 
 MemoryCount makeCount() { return MemoryCount(std::make_shared<MemoryCount::Total>(0)); }
 
-// Of a triangle.
+// Points of a triangle.
 Indices makePoints(int first) { return {first, first + 1, first + 2, 0, 0, 1, 2, 3, 4}; }
 
 /// Adds a face to those that are kept.
@@ -55,7 +55,7 @@ Found find(BfrExt::Surface<double> &surface, Shape const &shape, INIT const &ini
     Found found;
     found.indices.resize(std::size_t(surface.GetNumControlPoints()));
     EXPECT_EQ(surface.GetControlPointIndices(found.indices.data()), surface.GetNumControlPoints());
-    // Of values, too, whatever they stand for.
+    // Values, too, whatever they stand for.
     std::vector<double> control;
     for (Far::Index const index : found.indices) {
         control.push_back(shape.positions[std::size_t(index) % shape.positions.size()]);
@@ -71,7 +71,7 @@ Found find(BfrExt::Surface<double> &surface, Shape const &shape, INIT const &ini
     return found;
 }
 
-/// What surfaces of all faces and kinds of data are made of, several times.
+/// Finds the data of surfaces of all faces and kinds of data, several times.
 std::vector<Found> findAll(BfrExt::SurfaceFactory const &factory, Shape const &shape,
                            int numRounds) {
     std::vector<Found> result;

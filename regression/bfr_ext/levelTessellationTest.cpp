@@ -274,7 +274,7 @@ TEST(Surface, IsInvalidWhereItIsMovedFrom) {
     auto const factory = BfrExt::SurfaceFactory::Create(*refiner);
     LevelTessellation const tessellation(Parameterization(4), 2);
     std::vector<std::vector<double>> results;
-    // Of a face that is its own, and of one that the factory has kept.
+    // First with data of the surface's own, then with data that the factory has kept.
     for (int round = 0; round < 2; ++round) {
         BfrExt::Surface<double> from;
         ASSERT_TRUE(factory->InitVertexSurface(0, &from));
@@ -417,7 +417,7 @@ TEST(TessellationSurface, NeighboursShareTheirPointsToTheBit) {
 TEST(TessellationSurface, PointsAreThoseOfSinglePlaces) {
     Sdc::Options options;
     options.SetVtxBoundaryInterpolation(Sdc::Options::VTX_BOUNDARY_EDGE_ONLY);
-    // Of tori, faces are plain; with Average, derivatives grow and shrink in steps.
+    // Faces of tori are plain; with Average, derivatives grow and shrink in steps.
     constexpr int kMaxFaces = 40;
     Shape const irregular = MakeTorus(9, 7, TorusFaces::IrregularTriangles);
     Shape const chamfered = MakeChamfered("chamfered", MakeTorus(7, 6, TorusFaces::Quads));
@@ -435,7 +435,7 @@ TEST(TessellationSurface, PointsAreThoseOfSinglePlaces) {
         RandomLevels levels(base, 3);
         for (int face = 0; face < std::min(base.GetNumFaces(), kMaxFaces); ++face) {
             Surface<double> const &surface = surfaces[face];
-            // Of level 6, a face is taken apart further.
+            // At level 6, a face is taken apart further.
             LevelTessellation const tessellation =
                 face == 0 ? LevelTessellation(surface.GetParameterization(), 6)
                           : levels.Make(base, face, 3);
@@ -516,7 +516,7 @@ INSTANTIATE_TEST_SUITE_P(, TreeDerivativesTest,
                                          ReferenceMask::Smooth),
                          [](auto const &mask) { return std::string(ToString(mask.param)); });
 
-// What the edges and vertices of a face depend on has vertices twice around a tube of few, or is cut off at
+// The neighbourhood of a face's edges and vertices has vertices twice around a tube of few faces, or is cut off at
 // boundaries, though all faces around are those of a lattice: they are not all of one type.
 TEST(TessellationSurface, BordersInCutLatticesAreThoseOfSinglePlaces) {
     constexpr int kNumFaces = 12;

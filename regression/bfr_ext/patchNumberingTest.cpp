@@ -48,7 +48,7 @@ PatchStream<double>::Options getOptions(int facetSize) {
         LevelTessellation::Options().SetFacetSize(facetSize));
 }
 
-/// What the faces of a stream are: as they come by chance, or with faces 0 and 1 so fine that they come in
+/// Sizes of the faces of a stream: as they come by chance, or with faces 0 and 1 so fine that they come in
 /// sections.
 enum class Size { Small, InSections };
 

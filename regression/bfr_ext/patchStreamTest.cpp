@@ -32,7 +32,7 @@ using FarExt::StatusCode;
 
 namespace {
 
-/// What a stream hands out, by face and section.
+/// The output of a stream, by face and section.
 template <typename REAL>
 class Collection {
 public:
@@ -130,7 +130,7 @@ TEST(PatchStreamTest, PatchesDoNotDependOnThreadsMemoryAndShares) {
         for (std::size_t const memory :
              {std::size_t(0), std::size_t(1) << 16, std::size_t(1) << 28}) {
             for (int const numShares : {1, 4}) {
-                // Of types that take some megabytes.
+                // The types take some megabytes.
                 BfrExt::SurfaceFactoryCache cache(memory == 0 ? 1 << 18 : 1 << 30);
                 auto const factory = SurfaceFactory::Create(
                     *refiner, SurfaceFactory::Options().SetExternalCache(&cache));
@@ -464,7 +464,7 @@ TEST(PatchStreamTest, RefusesForestsThatDoNotFit) {
     expectRefused(forest, {}, "face 2");
     auto const other = CreateRefiner(GetShape("icosahedron"), ReferenceMask::Smooth, 0, {});
     expectRefused(BfrExt::CellForest(*other), {}, "20 trees");
-    // Of another mesh with six faces, and of one that is the same.
+    // A forest of another mesh with six faces, and one of an equal mesh.
     for (Shape const &ofOther : {MakeBipyramid(3), shape}) {
         auto const otherRefiner = CreateRefiner(ofOther, ReferenceMask::Smooth, 0, getEdgeOnly());
         BfrExt::CellForest ofOtherRefiner(*otherRefiner);

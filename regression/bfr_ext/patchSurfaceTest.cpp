@@ -177,7 +177,7 @@ INSTANTIATE_TEST_SUITE_P(, PatchSurfaceTest,
                                          kTruncateCases[2], kTriHexCases[2]),
                          getName);
 
-// The same of values, on both sides of seams, by patches of several levels.
+// Values on both sides of seams, by patches of several levels.
 TEST(PatchChannelSurfaceTest, PatchesAreCloseToSurfaces) {
     for (SurfaceCase const &surfaceCase : {kPlainCases[2], kTruncateCases[2]}) {
         for (Shape const &shape : GetFeatureShapes()) {

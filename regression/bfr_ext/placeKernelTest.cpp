@@ -18,7 +18,7 @@ using BfrExt::internal::PlaceSums;
 
 namespace {
 
-/// What stands where no sum goes.
+/// The value of numbers that no sum overwrites.
 constexpr int kUntouched = -7;
 
 template <typename REAL>
@@ -78,7 +78,7 @@ public:
         std::vector<REAL> results(_numPlaces * _stride, REAL(kUntouched));
         auto const form = [&](std::size_t row, std::size_t place) {
             for (std::size_t k = 0; k < _size; ++k) {
-                // Those of narrow blocks are several.
+                // Narrow blocks have several.
                 bool const isNarrow =
                     _matrix.GetWidth(row / PlaceMatrix<REAL>::kMaxWidth *
                                      PlaceMatrix<REAL>::kMaxWidth) == PlaceMatrix<REAL>::kLanes;
@@ -126,7 +126,7 @@ struct Kernel {
     bool isFused;
 };
 
-/// Those that the machine has, the widest ones last.
+/// The kernels that the machine can run, the widest ones last.
 template <typename REAL>
 std::vector<Kernel<REAL>> getKernels() {
     using namespace BfrExt::internal;

@@ -90,7 +90,7 @@ void expectStencils(double tolerance, double toleranceOfDerivatives) {
     }
 }
 
-/// What the cache takes for the points of a level in all faces at such a pole.
+/// The memory of the cache for the points of a level in all faces at such a pole.
 std::size_t measureMemory(int numFaces, int level) {
     Shape const shape = MakePoleOfSpokes(numFaces);
     auto const refiner = createRefiner(shape);

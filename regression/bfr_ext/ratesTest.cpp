@@ -188,7 +188,7 @@ TEST(Parameterization, LeadsToThePlaneAndBack) {
     }
 }
 
-// Of all sizes, and of a triangle with sub-faces, as Catmull-Clark's scheme has it.
+// Faces of all sizes, and a triangle with sub-faces, as Catmull-Clark's scheme has it.
 TEST(Parameterization, ItsPlaneIsThatOfTessellations) {
     for (int size = 3; size < 12; ++size) {
         Parameterization const parameterization(size);
@@ -224,7 +224,7 @@ TEST(Parameterization, ItsPlaneIsThatOfTessellations) {
             EXPECT_NEAR(back[1], uv[1], 1e-12) << size;
         }
     }
-    // What is outside comes to the boundary, towards the centre.
+    // Places outside move to the boundary, towards the centre.
     double const below[2] = {0.5, -3};
     double uv[2];
     double middle[2];
@@ -397,7 +397,7 @@ void expectStencils(Surface<double> const &surface, std::vector<double> const &c
     }
     for (std::size_t i = 0; i < numPlaces; i += step) {
         SCOPED_TRACE(testing::Message() << "place " << coords[2 * i] << " " << coords[2 * i + 1]);
-        // Of a triangle in sub-faces, (u, v) are its own where these lie in its plane.
+        // In a triangle with sub-faces, (u, v) are its own where these lie in its plane.
         bool const isOther =
             surface.GetFaceSize() == 3 && tessellation.GetParameterization().HasSubFaces();
         FacePlace const given = {coords[2 * i], coords[2 * i + 1]};

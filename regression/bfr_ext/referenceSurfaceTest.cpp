@@ -102,7 +102,7 @@ private:
     std::map<int, std::vector<Place>> _places;
 };
 
-/// What was compared, for the log.
+/// Counts of comparisons, for the log.
 struct Comparison {
     void Report() const {
         std::cout << numPlaces << " places, the largest distance " << largest << " of the size\n";
@@ -345,8 +345,8 @@ TEST_P(ReferenceDerivativeTest, DerivativesAreThoseOfTheReference) {
               << sum / numPlaces << " on average; of second derivatives " << largestOfSecond
               << " and " << sumOfSecond / numPlaces << '\n';
     EXPECT_GT(numPlaces, 60);
-    // Those of a fit are off by as much as they change over its points, which lie in a 32nd of the face: second ones by .3
-    // and .05, and more where quads have a mask for each place.
+    // Derivatives of a fit are off by as much as they change over its points, which lie in a 32nd of the face: second
+    // ones by .3 and .05, and more where quads have a mask for each place.
     double const factor = GetParam() == ReferenceMask::Smooth ? 3 : 1;
     EXPECT_LE(sum, 0.001 * factor * numPlaces);
     EXPECT_LE(largestOfSecond, 0.4 * factor);

@@ -152,7 +152,7 @@ TEST(SecondDerivatives, AreThoseOfQuadratics) {
         for (Place const &uv : places) {
             SCOPED_TRACE(testing::Message() << ToString(mask) << " at " << uv[0] << ", " << uv[1]);
             All<double> const all = evaluateAll(of.surface, of.points, uv);
-            // Of x * x + y, x * y, y * y - 3 * x, where x and y are bilinear in u and v.
+            // Derivatives of x * x + y, x * y, y * y - 3 * x, where x and y are bilinear in u and v.
             auto const [at, byU, byV, byUv] =
                 FarExt::internal::FindInPlane(BfrExt::Parameterization(6), uv);
             double const x = at[0];

@@ -35,7 +35,7 @@ Polygon rotate(Polygon polygon) {
     return polygon;
 }
 
-/// What a stream hands out of one face, by places.
+/// The output of a stream for one face, by places.
 template <typename REAL>
 struct FaceContents {
     std::map<Coord, std::vector<REAL>> points; // with derivatives and values
@@ -163,7 +163,7 @@ void expectSections(Shape const &shape, SurfaceFactory const &factory, int facet
         } else {
             ASSERT_EQ(sections.facets, whole.facets) << "face " << face;
         }
-        // What no other section has lies on the edges of the face.
+        // Lines that no other section has lie on the edges of the face.
         std::size_t numPoints = 0;
         for (auto const &[line, count] : sections.boundaries) {
             numPoints += line.size() - 1;

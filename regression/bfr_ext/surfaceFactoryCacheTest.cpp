@@ -53,7 +53,7 @@ TEST(SurfaceFactoryCache, MemoryIsBoundedAndResultsKeepTheirBits) {
     Shape const &shape = GetFeatureShape("mixedSharpnessQuads");
     auto const refiner = CreateRefiner(shape, ReferenceMask::Smooth, 0, getEdgeOnly());
     int const numFaces = refiner->GetLevel(0).GetNumFaces();
-    // Of all faces, and some of them again, by one surface.
+    // Evaluates all faces, and some of them again, by one surface.
     auto const evaluateAll = [&](SurfaceFactoryCache &cache) {
         auto const factory =
             SurfaceFactory::Create(*refiner, SurfaceFactory::Options().SetExternalCache(&cache));
@@ -98,7 +98,7 @@ TEST(SurfaceFactoryCache, SurfacesKeepTypesThatItForgets) {
                   evaluate(expected[face], shape.positions));
     }
     std::size_t const size = none.GetMemory();
-    // What stays is that of the last surface.
+    // The type of the last surface stays.
     surfaces.clear();
     EXPECT_LT(none.GetMemory(), size / 2);
     EXPECT_LT(none.GetNumTypes(), whole.GetNumTypes());

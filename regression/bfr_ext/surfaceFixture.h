@@ -103,7 +103,7 @@ SurfacePoint EvaluateSurface(BfrExt::Surface<REAL> const &surface,
 template <typename REAL>
 class SurfaceSet {
 public:
-    /// \brief Those of a refiner, which has the surface level.
+    /// \brief Makes the surfaces of a refiner, which has the surface level.
     ///
     /// \param positions  of level 0
     /// \param cache      of the types, or null
@@ -150,7 +150,7 @@ public:
         return {double(p[0]), double(p[1]), double(p[2])};
     }
 
-    /// Of the surface level.
+    /// Positions of the surface level.
     std::vector<REAL> const &GetPositions() const { return _positions; }
 
 private:

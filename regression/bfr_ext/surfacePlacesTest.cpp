@@ -146,7 +146,7 @@ TEST_P(SurfacePlacesTest, LieOnTheSurface) {
     EXPECT_LT(finer.angle, 0.7 * errors.angle);
 }
 
-// Those of the patches leave out what the shares of inner points change by, as OpenSubdiv's do.
+// Derivatives of patches leave out the change of inner points' shares, as OpenSubdiv's do.
 TEST_P(SurfacePlacesTest, DerivativesAreNearlyThoseOfTheirPoints) {
     constexpr double kStep = 1e-5;
     double sum = 0;
@@ -264,7 +264,7 @@ TEST(SurfacePlaces, InPatchesChangeAsTheirDerivativesSay) {
             };
             std::vector<bool> isMet(std::size_t(BfrExt::internal::GetNumFacePatches(shape, level)));
             std::vector<Uv> places = findPlaces(size, 400);
-            // Those near the centre, whose patches are of the whole cell.
+            // Places near the centre, whose patches are of the whole cell.
             std::vector<Uv> const nearCenter = findPlaces(size, 40, 0.02);
             places.insert(places.end(), nearCenter.begin(), nearCenter.end());
             for (Uv const &uv : places) {
@@ -505,7 +505,7 @@ TEST(SurfacePlaces, OfManyFacesAreThoseOfEach) {
     EXPECT_EQ(status.GetComponentIndex(), shape.GetNumFaces());
 }
 
-// Those of the patches that have places, and no others, with the same bits.
+// Points of the patches that have places, and of no others, with the same bits.
 TEST(SurfacePlaces, HavePatchPointsOfTheirOwn) {
     auto const quads = MakeTorus(6, 5, TorusFaces::Quads);
     auto const triangles = MakeTorus(6, 5, TorusFaces::IrregularTriangles);

@@ -92,7 +92,7 @@ struct Limits {
 
 using Point = Numbers<double, 3>;
 
-/// Of all vertices of the last level, from positions of level 0.
+/// Finds the limits of all vertices of the last level, from positions of level 0.
 std::vector<Point> findLimits(TopologyRefiner const &refiner,
                               std::vector<double> const &positions) {
     FarExt::PrimvarRefinerReal<double> const primvarRefiner(refiner);
@@ -551,7 +551,7 @@ TEST_P(SurfaceDataTest, FaceVaryingValuesAreTheirLimits) {
                 std::vector<double> uv(2 * std::size_t(faceValues.size()));
                 level.GetFaceSurfaceCoords(face, 0, uv.data());
                 for (int i = 0; i < faceValues.size(); ++i) {
-                    // Those of the level are as far from their limits as its faces are large.
+                    // Values of the level are as far from their limits as its faces are large.
                     ASSERT_NEAR(evaluate(surface, base, uv.data() + 2 * std::ptrdiff_t(i)),
                                 values[std::size_t(faceValues[i])].values[0],
                                 rule == Sdc::Options::FVAR_LINEAR_ALL ? kTolerance : 1e-2)
@@ -602,7 +602,8 @@ TEST(SurfaceFactoryTest, RefusesFacesWithoutASurface) {
 
 namespace {
 
-/// What lies around the pole of a shape has no surface, which names \p index, but what lies farther out; or all has.
+/// Expects that faces around the pole of a shape have no surface, with an error that names \p index, and faces farther
+/// out have one; or that all have one.
 void expectCrowd(Shape const &shape, FarExt::ComponentType type, int index, bool isRefused) {
     SCOPED_TRACE(shape.GetNumFaces());
     int const n = shape.GetNumFaces() / 3;

@@ -25,7 +25,7 @@ public:
         surface.Evaluate(tessellation, control.data(), 3, p.data(), du.data(), dv.data(), 3);
         Add(tessellation, p, du, dv);
     }
-    /// The same of points and derivatives that are known, 3 numbers each.
+    /// Overload for points and derivatives that are known, 3 numbers each.
     void Add(BfrExt::LevelTessellation const &tessellation, std::vector<double> const &p,
              std::vector<double> const &du, std::vector<double> const &dv) {
         for (std::vector<int> const &facet : GetFacets(tessellation)) {

@@ -55,7 +55,7 @@ std::vector<double> pick(std::vector<double> const &points, std::size_t stride,
     return result;
 }
 
-/// The same of what rings have, by point of a cell's type or by what its step makes.
+/// Overload for values of rings, by point of a cell's type or by point that its step makes.
 std::vector<double> pickCell(RingPlaces const &places, RingValues<double> const &values,
                              std::vector<int> const &indices) {
     std::vector<int> ofType(indices.size());
@@ -74,7 +74,7 @@ std::vector<int> makeNumbers(std::size_t count) {
     return numbers;
 }
 
-/// What a step makes of points of a type, without gaps.
+/// The points that a step makes of points of a type, without gaps.
 std::vector<double> step(CellType const &type, std::vector<double> const &points) {
     std::size_t const padded = StepMatrix::GetPaddedSize(kSize);
     std::vector<double> own(std::size_t(type.GetNumPoints()) * padded);
@@ -86,7 +86,7 @@ std::vector<double> step(CellType const &type, std::vector<double> const &points
     return pick(ofStep, padded, makeNumbers(type.GetStep().GetNumRows()));
 }
 
-/// The same by point of a child.
+/// These points, by point of a child.
 std::vector<double> stepTo(CellType const &type, std::size_t child,
                            std::vector<double> const &points) {
     CellType::Child const &to = type.GetChildren()[child];

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// What is kept from view to view, against views that find all anew.
+// Bounds kept from view to view, against views that find all anew.
 #include "surfaceFixture.h"
 
 #include "bfr_ext/patchStream.h"
@@ -186,7 +186,7 @@ TEST(ViewBounds, StreamsOfForestsAreThoseMadeWithoutThem) {
     }
 }
 
-// Of a mesh of which one vertex moves, faces elsewhere need nothing that is not there.
+// If one vertex of a mesh moves, faces elsewhere need nothing new.
 TEST(ViewBounds, WhatDidNotMoveIsKept) {
     Scene scene(GetShape("torus"));
     ViewBounds bounds(*scene.factory);

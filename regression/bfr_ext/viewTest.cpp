@@ -43,7 +43,7 @@ using BfrExt::internal::RefinedCells;
 
 namespace {
 
-/// The same cells as those of a surface, made apart from it.
+/// The cells of a surface, made apart from it.
 struct BaseCells {
     /// \param meshPoints  of the surface level
     BaseCells(FarExt::TopologyRefiner const &refiner, std::vector<double> const &meshPoints)
@@ -180,7 +180,7 @@ std::vector<Shape> getShapes() {
     return shapes;
 }
 
-/// Those without tags and with tags and flaws.
+/// Shapes without tags, and with tags and flaws.
 std::vector<Shape> const &getManyShapes() {
     static std::vector<Shape> const kShapes = [] {
         std::vector<Shape> shapes = GetManifoldShapes();
@@ -565,7 +565,7 @@ void addRandomPoints(CellValues const &base, int face, int numCells, std::mt1993
 
 /// A sharp edge or boundary of a face, with points of its curve.
 struct CurveOfEdge {
-    /// Those at places of a polyline.
+    /// The control points at places of a polyline.
     CurveOfEdge(Surface<double> const &surface, std::vector<double> const &positions, int local)
         : edge(local), places(Polyline(kLevel).GetPlaces()) {
         for (Polyline::Place const place : places) {
@@ -988,7 +988,7 @@ std::array<double, 2> sampleHeights(CellValues const &values, int numSteps) {
     return range;
 }
 
-// What is estimated is close to the surface, and seldom less.
+// Estimates are close to the surface's thickness, and seldom less.
 TEST(View, ThicknessIsCloseToThatOfTheSurface) {
     using BfrExt::internal::CellGrid;
     using BfrExt::internal::CellMeasures;

@@ -28,7 +28,7 @@ using ReferencePolygon = std::vector<std::array<double, 2>>;
 /// other sides.
 std::vector<ReferencePolygon> DivideBasePolygon(int size, int numLevels);
 
-/// \brief What lies in one face of the base: a face, or half a hexagon, with the places of its corners in
+/// \brief A piece of a base face: a face, or half a hexagon, with the places of its corners in
 /// the regular polygon that the base face is.
 struct BasePiece {
     int baseFace;
@@ -42,7 +42,7 @@ struct BasePiece {
 std::vector<BasePiece> MakeBasePieces(TaggedMesh const &base);
 /// \brief The pieces of \p child, which a hexagonal step made of \p mesh, that pieces of that fall in.
 ///
-/// What lies at free boundaries is left out.
+/// Faces at free boundaries are left out.
 std::vector<BasePiece> RefineBasePieces(TaggedMesh const &mesh, TaggedMesh const &child,
                                         std::vector<BasePiece> const &pieces);
 

@@ -28,11 +28,11 @@ public:
     /// \return  the number of the first, the others following
     int Refine(int piece);
 
-    /// What a piece that was not refined looks like.
+    /// A piece that was not refined.
     struct Polygon {
         int baseFace;
         std::vector<int> vertices; ///< counter-clockwise
-        /// Of these, in the regular polygon that the base face is.
+        /// Places of these, in the regular polygon that the base face is.
         std::vector<std::array<double, 2>> places;
     };
     /// All pieces that were not refined; two trapezoids of one face whose lines 0 are the same, in one

@@ -21,7 +21,7 @@ using Point = Eigen::RowVectorXd;
 
 double const kPi = std::acos(-1.0);
 
-/// \brief What one step does to waves of frequency \p w around the vertex.
+/// \brief The matrix of one step for waves of frequency \p w around the vertex.
 ///
 /// Neighbour N of hexagon j is n e^j, its A and C are a e^j and c e^j, with e = exp(2 pi i w/k): the
 /// step takes (V, n, a, c) to what they are in the hexagons that edges make.  V is 0 unless w is 0.
@@ -288,7 +288,7 @@ QuadPath Shorten(QuadPath const &path) {
 
 namespace {
 
-/// Of a corner; null where its paths have none.
+/// Finds the row of a corner; null where its paths have none.
 PathRow const *findRow(QuadPath const &out, QuadPath const &in) {
     static PathRows const rows = readPathRows();
     std::string const ofOut = rowOfPath(out);

@@ -10,10 +10,10 @@
 
 namespace OpenSubdivHex::Regression {
 
-/// What all faces of a vertex were before the first hexagonal step.
+/// The kind of all faces of a vertex before the first hexagonal step.
 enum class FormerFaces { Mixed, Triangles, Quads };
 
-/// What all faces are that getSize(0 ... numFaces - 1) are the sizes of.
+/// The kind of faces whose sizes are getSize(0 ... numFaces - 1).
 template <typename GetSize>
 FormerFaces FindFormerFaces(int numFaces, GetSize const &getSize) {
     bool areTriangles = true;
@@ -37,7 +37,7 @@ struct IrregularRule {
     double meanWeight; ///< V' = (1 - meanWeight) V + meanWeight (mean of the new points beside V)
 };
 
-/// Of a vertex with \p numFaces hexagons, four or more, at a level made by \p numSteps steps, one or
+/// The masks of a vertex with \p numFaces hexagons, four or more, at a level made by \p numSteps steps, one or
 /// more.
 ///
 /// \param formerFaces  of the vertex, before these steps

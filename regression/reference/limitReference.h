@@ -11,9 +11,9 @@ namespace OpenSubdivHex::Regression {
 
 /// \brief Where vertices go when hexagonal steps are repeated without end.
 ///
-/// What lies around a vertex is cut out of the mesh and refined, and what then lies around the same
-/// vertex is cut out again, each time as large as before.  Sooner or later it looks like something
-/// before.  Then the steps between are one matrix, which is applied to the vertex until it stays.
+/// The neighbourhood of a vertex is cut out of the mesh and refined, and the new neighbourhood of the
+/// vertex is cut out again, each time as large as before.  Sooner or later it equals an earlier
+/// one.  Then the steps between are one matrix, which is applied to the vertex until it stays.
 ///
 /// The mesh must have no free boundary near the vertex, whose limit they have none.
 class LimitReference {
@@ -36,7 +36,7 @@ private:
         bool comesIn = false; ///< which edge of the first face says what comes first in the next
         std::vector<int> sources; ///< vertices of the mesh that it was cut out of
     };
-    /// What a step makes of one piece: the next piece's values, in terms of its own.
+    /// A step from one piece to the next: the next piece's values, in terms of its own.
     struct Step {
         Signature next;
         Eigen::MatrixXd matrix;

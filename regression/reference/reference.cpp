@@ -106,7 +106,7 @@ int irregularFaces(ReferenceMesh const &mesh, VertexHandle vertex) {
     return mesh.numSteps > 0 && count >= 4 && !mesh.is_boundary(vertex) ? count : 0;
 }
 
-/// What the faces of a vertex were in the base mesh.
+/// The kind of a vertex's faces in the base mesh.
 FormerFaces formerFaces(ReferenceMesh const &mesh, VertexHandle vertex) {
     if (mesh.numSteps > 0) {
         return mesh.formerFaces[vertex.idx()];
@@ -135,7 +135,7 @@ bool isBesideQuad(ReferenceMesh const &mesh, HalfedgeHandle corner) {
 
 QuadPath longer(QuadPath const &path, char digit) { return path.Append(digit); }
 
-/// Of a half-edge, at its start or its end.
+/// The path of a half-edge, at its start or its end.
 QuadPath pathOf(ReferenceMesh const &mesh, HalfedgeHandle halfedge, bool isStart) {
     if (mesh.numSteps > 0) {
         auto const &paths = isStart ? mesh.pathsOfStart : mesh.pathsOfEnd;
@@ -268,7 +268,7 @@ std::size_t countCorners(ReferenceMesh const &mesh) {
     return count;
 }
 
-/// Of a face of the child: the paths of its edges at each vertex.
+/// For a face of the child: the paths of its edges at each vertex.
 struct PathsAtVertex {
     QuadPath out;
     QuadPath in;

@@ -34,14 +34,14 @@ using ReferenceValues = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Ei
 /// The rule for new points.
 enum class ReferenceMask { Average, Cosine, Smooth };
 
-/// \brief What a vertex was made from, in terms of the mesh before.
+/// \brief The origin of a vertex, in terms of the mesh before.
 struct ReferenceVertexOrigin {
     bool isFVertex = false; ///< made at a corner of a face, else an old vertex that was moved
     int vertex = -1;        ///< the old vertex; of an F-vertex the one beside it
     int face = -1;          ///< of an F-vertex its face
 };
 
-/// \brief What a face was made from, in terms of the mesh before.
+/// \brief The origin of a face, in terms of the mesh before.
 struct ReferenceFaceOrigin {
     bool isEFace = false;        ///< made for an edge, else the smaller copy of a face
     int face = -1;               ///< of an F-face
@@ -82,7 +82,7 @@ ReferenceValues InterpolateVarying(ReferenceMesh const &mesh, ReferenceLevel con
 /// The new point beside corner \p i of a face, from the values at the face's corners.
 Eigen::RowVectorXd NewPoint(ReferenceMask mask, std::vector<Eigen::RowVectorXd> const &face, int i);
 
-/// The same for linear interpolation.
+/// NewPoint() for linear interpolation.
 Eigen::RowVectorXd NewVaryingPoint(std::vector<Eigen::RowVectorXd> const &face, int i);
 
 /// The points of a mesh as values of width 3.

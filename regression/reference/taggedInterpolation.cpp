@@ -156,7 +156,7 @@ Narrows findNarrows(TaggedMesh const &mesh) {
     return narrows;
 }
 
-/// What of a mesh follows the rules of Smooth for hexagons beside what is not of their lattice.
+/// The components of a mesh that follow the rules of Smooth for hexagons beside irregular vertices and quads.
 class Irregularities {
 public:
     explicit Irregularities(TaggedMesh const &mesh) : _mesh(mesh) {}
@@ -167,7 +167,7 @@ public:
         double share = 0; ///< of its rule: what is left by the sharpest thing at it
         FormerFaces formerFaces = FormerFaces::Mixed;
     };
-    /// Of no faces for others.
+    /// Without faces for other vertices.
     Vertex FindVertex(int vertex) const {
         TaggedMesh::Vertex const &tags = _mesh.vertices[vertex];
         double sharpness = tags.sharpness;
@@ -430,7 +430,7 @@ private:
         return share * point + (1 - share) * plain;
     }
 
-    /// What vertices with one face change in half a face.
+    /// The change that vertices with one face make in half a face.
     Point fromOneFace(Face const &face, Side corner) const {
         auto const found = _narrows.find({corner.face, corner.place});
         if (found == _narrows.end()) {

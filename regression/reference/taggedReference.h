@@ -51,14 +51,14 @@ struct TaggedMesh {
         FormerFaces formerFaces = FormerFaces::Mixed; ///< when hexagonal steps began
         std::vector<Side> corners; ///< faces of the vertex, and where it is in them
     };
-    /// What a vertex was made from: an old vertex, or the corner of a face.
+    /// The origin of a vertex: an old vertex, or the corner of a face.
     struct VertexOrigin {
         int vertex = -1;
         int face = -1;
         int place = -1;
         bool isFar = false; ///< of a truncation: at the end of the edge that begins in the corner
     };
-    /// \brief What a face was made from: a face, an edge seen from one of its sides, or a vertex.
+    /// \brief The origin of a face: a face, an edge seen from one of its sides, or a vertex.
     /// A hexagon made for an edge has the side that its first vertices start on.
     struct FaceOrigin {
         int face = -1;
@@ -74,7 +74,7 @@ struct TaggedMesh {
     bool chaikin = false;
     bool freeBoundaries = false; ///< boundaries that other schemes cut follow the paper's rule
 
-    // Of a refined mesh.
+    // For a refined mesh.
     ReferenceScheme madeBy = ReferenceScheme::Hexagonal;
     int numHexagonalSteps = 0; ///< that made it, behind the last step of another scheme
     std::vector<VertexOrigin> vertexOrigins;
@@ -90,7 +90,7 @@ struct TaggedMesh {
     }
 };
 
-/// \brief What a base mesh carries.
+/// \brief A base mesh with tags, labels and channels.
 struct TaggedBase {
     int numVertices = 0;
     std::vector<int> faceSizes;
@@ -145,7 +145,7 @@ struct ReferenceStep {
     /// Whether polygons close the gaps that quads leave around vertices.  The borders of gaps
     /// follow the paper's rule.
     bool closeGaps = true;
-    /// Of a truncation.
+    /// For a truncation.
     ReferenceCuts cuts;
 };
 

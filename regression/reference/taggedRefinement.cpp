@@ -157,7 +157,7 @@ void Refinement::makeVertices() {
 
 QuadPath longer(QuadPath const &path, char digit) { return path.Append(digit); }
 
-/// Of the parent: those that it has, or those that begin there.
+/// Finds the paths of the parent: those that it has, or those that begin there.
 void Refinement::findBasePaths() {
     for (Face const &face : _parent.faces) {
         _pathsOut.push_back(face.pathsOut);

@@ -118,7 +118,7 @@ std::vector<RuleShare> ruleShares(TaggedMesh const &mesh, int v) {
     float const childVertexSharpness = decremented(sharpness);
     TaggedRule const rule = ruleOf(sharpness, lines.size());
 
-    // What gets smooth with this step counts by what is left of it.
+    // Edges that get smooth with this step count by the sharpness that they have left.
     float sum = 0;
     int count = 0;
     if (sharpness > 0 && childVertexSharpness <= 0) {

@@ -41,10 +41,10 @@ std::vector<SharpEdge> linesOf(TaggedMesh const &mesh, int vertex,
                                std::vector<SharpEdge> const &edges);
 
 float decremented(float sharpness);
-/// Of a sharp edge after one step, at the vertex where it ends.
+/// The sharpness of a sharp edge after one step, at the vertex where it ends.
 float childSharpness(TaggedMesh const &mesh, int vertex, float sharpness);
 
-/// What a vertex follows of a rule, along which lines.
+/// A vertex's share of a rule, and the lines of the rule.
 struct RuleShare {
     double weight;
     TaggedRule rule;

@@ -134,7 +134,7 @@ public:
     }
 
 private:
-    /// What an edge is: beside a corner, along an edge, from a vertex to a new one on an edge, or through the
+    /// Kinds of edges: beside a corner, along an edge, from a vertex to a new one on an edge, or through the
     /// polygon of a vertex.
     enum Kind { BesideCorner, AlongEdge, Spoke, Through };
     using Key = std::array<int, 3>;
@@ -475,7 +475,7 @@ private:
         return sum;
     }
 
-    /// Those on the edge that begins in a corner of a vertex.
+    /// Weights of the new vertex on the edge that begins in a corner of a vertex.
     Weights findWeights(int v, Side corner) const {
         double const smooth = smoothShare(v);
         Weights const whole = weightsOf(int(_mesh.vertices[v].corners.size()));
