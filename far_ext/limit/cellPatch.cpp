@@ -59,12 +59,12 @@ void gatherEdge(LimitPatchGatherer &gatherer, Level const &level, Index edge, in
     gather(gatherer, level, face, cell);
 }
 
-// The side of a level's vertex that a half of a face lies on.
-int findSide(Level const &level, Index vert, Index face, int half) {
+// The side of a vertex of a patch that half 0 of face 0 lies on.
+int findSide(Level const &level, Index vert) {
     std::vector<VertexSide> const sides = FindVertexSides(level, vert);
     for (std::size_t side = 0; side < sides.size(); ++side) {
         for (FanItem const &item : sides[side].items) {
-            if (item.isFace && item.face == face && (item.half < 0 || item.half == half)) {
+            if (item.isFace && item.face == 0 && item.half <= 0) {
                 return int(side);
             }
         }
@@ -356,9 +356,7 @@ std::vector<CornerLimit> FindCornerLimits(CellPatch const &cell, LimitMaskFinder
         if (!mask) {
             return {};
         }
-        bool const isHalf = cell.kind == CellKind::Half || cell.kind == CellKind::HalfPolygon;
-        int const half = isHalf ? cell.GetHalf() : 0;
-        int const side = patch.sides[std::size_t(findSide(level, vert, 0, half))];
+        int const side = patch.sides[std::size_t(findSide(level, vert))];
         LimitMask::Tangents const &tangents = mask->sides[std::size_t(side)];
         auto const spread = [&](std::vector<double> const &weights) {
             std::vector<double> result(std::size_t(level.numVertices));

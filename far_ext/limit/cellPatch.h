@@ -33,7 +33,8 @@ enum class CellKind {
 /// So that neighbours agree on what they share to the bit, edges and vertices have patches of their
 /// own, whose numbering does not depend on the cell that asks for them.
 ///
-/// The patch has the face of the cell, or one beside the edge or vertex, as its face 0.
+/// The patch has the face of the cell, or one beside the edge or vertex, as its face 0.  Face 0 begins at the cell's first
+/// corner: a cell that is half of a face is half 0.
 struct CellPatch {
     CellKind kind = CellKind::Whole;
     std::vector<int> locals;         ///< the corners, or ends, as places in face 0
@@ -41,8 +42,6 @@ struct CellPatch {
     LimitPatch patch;
 
     int GetNumCorners() const { return int(locals.size()); }
-    /// For a half cell or a half polygon, which half of a face it is, as in GetPlaceInHalves().
-    int GetHalf() const { return locals[0] == kDiagonalStart ? 0 : 1; }
 };
 
 /// Gathers the cell of a surface face.

@@ -100,10 +100,8 @@ CallStatus FindCellPatchPoints(CellPatch const &cell, Sdc::Options sdcOptions,
                       mesh.refinements[0], mesh.levels[1]);
     bool const isWhole = cell.kind == CellKind::Whole;
     assert(!isWhole || cell.locals[0] == 0);
-    bool const isCut = FindFaceCells(mesh.levels[0], 0).IsCut();
-    PatchCells const cells = isWhole
-                                 ? PatchCells(mesh, 0, std::vector<Index>{0})
-                                 : PatchCells(mesh, 0, PatchCell{0, isCut ? cell.GetHalf() : 0});
+    PatchCells const cells =
+        isWhole ? PatchCells(mesh, 0, std::vector<Index>{0}) : PatchCells(mesh, 0, PatchCell{0, 0});
     PatchBuilder builder(hierarchy, -1, sdcOptions, schemeOptions, cells);
     PatchAges ofVertices = {ages.steps,
                             std::vector<int>(std::size_t(mesh.levels[0].numVertices), 0)};

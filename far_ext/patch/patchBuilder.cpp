@@ -455,7 +455,6 @@ PatchSite PatchBuilder::LevelBuilder::getSite(PatchQuantity quantity, CellSide c
     // Behind the surface level faces are hexagons, and few quads and others.
     auto const getFaceSize = [&](int side) {
         Index const face = _level.edgeFaces[curve.index][side];
-        constexpr int kHexagon = HexIndexing::kNumEFaceCorners;
         if (face < 0) {
             return steps == 0 ? 0 : kHexagon;
         }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "lineRow.h"
 
+#include "far_ext/rules/mask.h"
+
 #include <algorithm>
 #include <array>
 #include <cstddef>
@@ -9,23 +11,22 @@ namespace OpenSubdivHex::FarExt::internal {
 
 namespace {
 
-constexpr int kHexagon = 6;
 constexpr int kNumLineFaces = 5;
 constexpr int kNone = -1;
 
-struct TableRow {
+struct LineTableRow {
     int numSteps;
     LineFace face;
     int place; // of those on the right of the face
     int ofVertex;
     int parts[kHexagon];
 };
-constexpr double kParts = 4096;
+constexpr double kLineParts = 4096;
 constexpr LineFace kOnLine = LineFace::OnLine;
 constexpr LineFace kHalf = LineFace::Half;
 constexpr LineFace kBehind = LineFace::Behind;
 constexpr LineFace kBeyond = LineFace::Beyond;
-constexpr TableRow kTable[] = {
+constexpr LineTableRow kLineTable[] = {
 #include "lineRows.inl"
 };
 
@@ -35,20 +36,20 @@ int getMirrored(LineFace face, int place) {
 }
 
 // The rows by number of steps, face and place.
-class Rows {
+class LineRows {
 public:
-    Rows() {
-        for (TableRow const &row : kTable) {
+    LineRows() {
+        for (LineTableRow const &row : kLineTable) {
             for (bool const isBackwards : {false, true}) {
                 int const place = isBackwards ? getMirrored(row.face, row.place) : row.place;
                 Row &made =
                     _rows[std::size_t(row.numSteps)][std::size_t(row.face)][std::size_t(place)];
                 std::transform(row.parts, row.parts + kHexagon, made.weights,
-                               [](int part) { return part / kParts; });
+                               [](int part) { return part / kLineParts; });
                 made.hasMask =
                     std::any_of(row.parts, row.parts + kHexagon, [](int part) { return part > 0; });
                 made.isBackwards = isBackwards;
-                made.ofVertex = row.ofVertex == kNone ? kNone : row.ofVertex / kParts;
+                made.ofVertex = row.ofVertex == kNone ? kNone : row.ofVertex / kLineParts;
             }
         }
     }
@@ -70,8 +71,8 @@ private:
 } // namespace
 
 LineRow FindLineRow(int numSteps, LineFace face, int place) {
-    static Rows const kRows;
-    Rows::Row const &row = kRows.Get(numSteps, face, place);
+    static LineRows const kRows;
+    LineRows::Row const &row = kRows.Get(numSteps, face, place);
     return {row.hasMask ? row.weights : nullptr, row.isBackwards, row.ofVertex};
 }
 

@@ -100,6 +100,9 @@ OPENSUBDIVHEX_API VertexVertexMask ComputeVertexVertexMask(Interpolation interpo
 /// own around it.
 inline constexpr int kMinIrregularFaces = 4;
 
+/// The vertices of a hexagon.
+inline constexpr int kHexagon = 6;
+
 /// \brief The kind of all faces around an irregular vertex when hexagonal steps began, which made them
 /// hexagons; as far as it matters.
 enum class FacesAround : std::uint16_t {

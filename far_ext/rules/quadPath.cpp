@@ -13,7 +13,6 @@ namespace OpenSubdivHex::FarExt::internal {
 
 namespace {
 
-constexpr int kHexagon = 6;
 constexpr int kDigit = 4; // digits
 constexpr int kNumPaths = kDigit * kDigit * kDigit;
 // Kinds of vertices, by number of faces.

@@ -200,7 +200,6 @@ void StencilMultiplier<REAL>::multiply(Index face, Scratch &scratch) const {
     int const width = _supports.OfFaces()[face].size();
     REAL const *const *const parents = scratch.parents.data();
     REAL *const *const rows = scratch.rows.data();
-    constexpr int kHexagon = HexIndexing::kNumEFaceCorners;
     if (width >= kVector && rule.IsCirculant()) {
         switch (size) {
         case 3:

@@ -15,7 +15,6 @@ namespace {
 
 using Far::Index;
 
-constexpr int kHexagon = HexIndexing::kNumEFaceCorners;
 constexpr int kQuad = 4;
 
 // The weight of a smooth mask where something is as sharp as this: the rest is as without it.

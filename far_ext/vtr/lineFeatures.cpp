@@ -13,7 +13,6 @@ namespace {
 using Far::Index;
 using Sdc::Crease;
 
-constexpr int kHexagon = HexIndexing::kNumEFaceCorners;
 constexpr int kTrapezoid = HexIndexing::kNumBoundaryEFaceCorners;
 constexpr int kEndOfHalf = 0; // both of them
 

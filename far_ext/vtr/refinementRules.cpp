@@ -20,7 +20,6 @@ using Far::Index;
 
 namespace {
 
-constexpr int kHexagon = HexIndexing::kNumEFaceCorners;
 constexpr int kTrapezoid = HexIndexing::kNumBoundaryEFaceCorners;
 constexpr int kQuad = 4;
 

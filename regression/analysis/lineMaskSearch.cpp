@@ -444,7 +444,10 @@ public:
 
     std::vector<Entry> Judge(LineMasks const &masks) const {
         std::vector<Entry> entries = {{"quadratics", MeasureQuadratics(masks).norm()}};
-        for (auto const &[numU, numV] : {std::pair(14, 8), std::pair(20, 10), std::pair(9, 6)}) {
+        for (std::pair<int, int> const &size :
+             {std::pair(14, 8), std::pair(20, 10), std::pair(9, 6)}) {
+            int const numU = size.first;
+            int const numV = size.second;
             std::string const name =
                 " of " + std::to_string(numU) + " x " + std::to_string(numV) + ", row ";
             double const width = 1.0 / numV;
