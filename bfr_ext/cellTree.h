@@ -117,7 +117,7 @@ public:
     /// \param level       of the inside
     CellTree(FarExt::FaceShape shape, int const edgeLevels[], int level);
 
-    /// What the face looks like.
+    /// The shape of the face.
     FarExt::FaceShape GetFaceShape() const { return _shape; }
     /// Vertices of the face.
     int GetFaceSize() const { return _shape.size; }
@@ -139,7 +139,7 @@ public:
     int GetBorderSide(int cell) const { return getCell(cell).borderSides[0]; }
     /// \brief The side of a cell that lies on the long edge of half a polygon: 0, 1 or 3, or -1 if none does.
     ///
-    /// That of the face and its F-faces is 0.
+    /// The face and its F-faces have side 0 there.
     int GetLongEdgeSide(int cell) const { return getCell(cell).borderSides[1]; }
 
     /// Whether a cell has children.

@@ -124,7 +124,7 @@ public:
     Parameterization GetParameterization() const;
     /// Vertices of the face.
     int GetFaceSize() const;
-    /// What the face looks like.
+    /// The shape of the face.
     FarExt::FaceShape GetFaceShape() const;
     /// Writes the levels of the edges and of the inside.
     /// \return  how many they are: GetFaceSize() + 1, or 0 of a tree

@@ -30,7 +30,7 @@ public:
     explicit Parameterization(OpenSubdiv::Bfr::Parameterization const &other)
         : OpenSubdiv::Bfr::Parameterization(other) {}
 
-    /// What the face looks like.  Half a polygon has the (u, v) of a polygon of so many vertices.
+    /// The shape of the face.  Half a polygon has the (u, v) of a polygon of as many vertices.
     FarExt::FaceShape GetFaceShape() const { return {GetFaceSize(), _isHalf}; }
 
     /// @name The plane of the face

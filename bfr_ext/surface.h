@@ -114,7 +114,7 @@ public:
     Parameterization GetParameterization() const { return _parameterization; }
     /// Vertices of the face.
     int GetFaceSize() const { return _parameterization.GetFaceSize(); }
-    /// What the face looks like.
+    /// The shape of the face.
     FarExt::FaceShape GetFaceShape() const { return _parameterization.GetFaceShape(); }
 
     /// @name Control points

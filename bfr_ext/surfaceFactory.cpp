@@ -181,7 +181,7 @@ CallStatus SurfaceFactory::CheckFace(Index face) const {
     return checkCrowd(face, -1, face);
 }
 
-// What a base face is in the mesh (channel -1), or in the value mesh of a channel.
+// Returns the number of a base face in the mesh (channel -1), or in the value mesh of a channel.
 Far::Index SurfaceFactory::getOwnFace(Index face, int channel) const {
     if (channel < 0) {
         return face;

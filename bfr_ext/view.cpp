@@ -279,7 +279,7 @@ private:
         return _measures.facings[std::size_t(getMeasures(node).facing)];
     }
 
-    // Of a cell that is measured first.
+    // Samples a cell before it is measured.
     void sample(Node &node) {
         if (_sampled == node.measures) {
             return;

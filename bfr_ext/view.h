@@ -30,7 +30,7 @@ struct Camera {
     int height = 720;        ///< pixels
 };
 
-/// What a view decides about a cell.
+/// The visibility of a cell in a view.
 enum class CellVisibility : unsigned char {
     Visible,    ///< visible, or perhaps so
     Outside,    ///< all of it is outside of the picture

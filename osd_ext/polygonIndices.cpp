@@ -240,7 +240,7 @@ private:
         }
     }
 
-    // Of a face, or of a half of it.
+    // The corners of a face, or of a half of it.
     int getNumCorners(Index face, int half) const {
         int const size = _mesh.GetFaceSize(face);
         return half < 0 ? size : FarExt::GetHalfSize(half, size, _mesh.GetDiagonalEnd(face));

@@ -216,7 +216,7 @@ py::tuple getLevelFaces(FaceSurfaceFactory const &self) {
     return py::make_tuple(TakeOver(std::move(faces)), TakeOver(std::move(halves)));
 }
 
-// What get(faces, local) gives for the vertices or edges of a face.
+// Lists get(faces, local) for the vertices or edges of a face.
 template <typename GET>
 py::array_t<int> listAround(FaceSurfaceFactory const &self, int face, GET const &get) {
     CheckIndex(face, self.GetNumFaces(), "face");

@@ -18,7 +18,7 @@ public:
     CellType const &operator*() const;
     CellType const *operator->() const { return &**this; }
     bool IsInLattice() const { return _type ? _type->IsInLattice() : _plain->IsInLattice(); }
-    /// That of a face of \p size vertices.
+    /// The shape of a face of \p size vertices.
     FaceShape GetShape(int size) const { return _type ? _type->GetShape() : FaceShape(size); }
     /// Whether something sharp is near.
     bool IsSharp() const { return _type && _type->IsSharp(); }

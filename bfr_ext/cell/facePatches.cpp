@@ -269,7 +269,7 @@ public:
 
     // Null: in the whole cell.
     OPENSUBDIVHEX_INLINE SectorCell const *Find(Pair const &coords) const {
-        // Those that are not numbers are in the last triangles.
+        // Coordinates that are not numbers lie in the last triangles.
         double const a = coords[0] * _width;
         double const b = coords[1] * _width;
         int const i = int(std::min(double(_width - 1), a));
@@ -440,7 +440,7 @@ Quadrilateral findInWhole(FaceShape shape, int sector, Pair const &coords, int &
     }
     if (face.AreHalves()) {
         patch = half;
-        // Of a half, whose long edge is the diagonal, from the centre of that on, around from its end.
+        // The corners of a half from the centre of its long edge, the diagonal, on, around from the end of that edge.
         constexpr Pair kCorners[4] = {{0.5, 0}, {0.25, 0.5}, {-0.25, 0.5}, {-0.5, 0}};
         int const local = face.GetSideOfEdge(sector) - 1;
         return findInTrapezoid(map(kCorners[local], kCorners[local + 1], {0.5, 0}));

@@ -13,7 +13,7 @@ namespace OpenSubdivHex::BfrExt::internal {
 
 /// The levels of a face: those of its edges, then that of the inside.
 struct FaceLevels {
-    /// What tells them.
+    /// A key that identifies them.
     std::vector<int> GetKey() const {
         std::vector<int> key = levels;
         if (shape.isHalf) {

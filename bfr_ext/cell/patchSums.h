@@ -23,11 +23,11 @@ struct PatchCoordinate {
     REAL quadratic[3];
 };
 
-/// What the points of a patch weigh, and how derivatives by s and t become those by u and v.
+/// The weights of a patch's points, and the factors that turn derivatives by s and t into derivatives by u and v.
 template <int NUM_DERIVATIVES, typename REAL>
 struct PatchWeights {
     OPENSUBDIVHEX_INLINE explicit PatchWeights(PatchPlace const &place) : s(place.s), t(place.t) {
-        // Of two points inside of a corner; where both distances are 0, half.
+        // The share of the first of two points inside of a corner; where both distances are 0, half.
         auto const getShare = [](REAL ofFirst, REAL ofSecond) {
             constexpr REAL kLeast = std::numeric_limits<REAL>::min();
             return (ofFirst + kLeast) / (ofFirst + ofSecond + 2 * kLeast);
@@ -60,7 +60,7 @@ struct PatchWeights {
     PatchCoordinate<REAL> const s;
     PatchCoordinate<REAL> const t;
     REAL shares[4]; ///< of the first point inside of each corner
-    /// Of the derivatives by s and t, but for factors of the degree; then of those by s twice, by both, and by t twice.
+    /// Factors of the derivatives by s and t, with factors of the degree; then of second ones by s, both, and t.
     REAL byUv[2][2];
     REAL byUvTwice[3][5];
 };

@@ -175,7 +175,7 @@ private:
             REAL const cubic = (ROW < 3 ? t.quadratic[ROW] * t.toStart : 0) +
                                (ROW > 0 ? t.quadratic[ROW - 1] * t.toEnd : 0);
             _dss = _dss + mix(s, getBend(a, b, c), getBend(b, c, d)) * cubic;
-            // Of the row in the second differences between rows.
+            // The weights of the row in the second differences between rows.
             constexpr REAL kBends[2][4] = {{1, -2, 1, 0}, {0, 1, -2, 1}};
             _dtt = _dtt + mix(s, ofRow[0], ofRow[1]) *
                               (kBends[0][ROW] * t.toStart + kBends[1][ROW] * t.toEnd);

@@ -192,7 +192,7 @@ int RateEvaluator<REAL>::getFaceKey() const {
     return kNumTypes * parameterization.GetFaceSize() + int(parameterization.GetType());
 }
 
-// Of the face: plain ones are no half polygons.
+// The shape of the face: plain ones are no half polygons.
 template <typename REAL>
 FaceShape RateEvaluator<REAL>::getShape(Source const &source) const {
     return source.cell ? FaceShape(_tessellation.GetFaceSize()) : source.type.GetShape();

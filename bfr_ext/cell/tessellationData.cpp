@@ -21,7 +21,7 @@ constexpr int kInvalid = OpenSubdiv::Far::INDEX_INVALID;
 // Others are mostly those of one face, so that what is made for them is not used again.
 constexpr int kMaxCellsOfPlan = 128;
 
-// Of the long edge of half a polygon.
+// The last level of the long edge of half a polygon.
 constexpr int kLastEdgeLevel = Polyline::kLastLevel + 1;
 
 // By edge, the level of which it has the polyline; -1: none.

@@ -77,7 +77,7 @@ public:
         return tree ? tree->edgeLevels[edge]
                     : FaceSections::GetEdgeLevel(GetFaceShape(), int(edge), levels[edge]);
     }
-    /// What the start and the end of an edge weigh at a place on it; that may be the edge's last.
+    /// The weights of the start and the end of an edge at a place on it, which may be the edge's last.
     Pair GetWeightsOnEdge(std::size_t edge, int place) const {
         SectorCoords const &weights = places[std::size_t(place)];
         if (int(edge) >= GetFaceShape().GetFirstSector()) {

@@ -86,7 +86,7 @@ struct KiteSide {
 
 /// Side number \p side of a regular polygon, in whose centre corner 0 lies in the direction of U.
 KiteSide MakeKiteSide(int numSides, int side);
-/// \brief That of half a regular polygon, which has \p numCorners and the first side across.
+/// \brief Side number \p side of half a regular polygon, which has \p numCorners and the first side across.
 ///
 /// Its centre lies at a third of the line from the middle of the first side to the corner across, or the middle of the
 /// side across; U is the direction of the first side, V that of the line.

@@ -22,7 +22,7 @@ struct FaceCells {
     bool IsCut() const { return diagonalEnd > 0; }
     /// Whether cells are halves of regular polygons with the first side across.
     bool AreHalves() const { return IsCut() || isHalf; }
-    /// Of a cell.
+    /// The corners of a cell.
     int GetNumCorners(int half) const {
         return IsCut() ? GetHalfSize(half, faceSize, diagonalEnd) : faceSize;
     }
@@ -30,7 +30,7 @@ struct FaceCells {
     bool HasKites(int half) const { return GetNumCorners(half) != 4; }
     /// The patches of a cell.
     int GetNumPatches(int half) const { return HasKites(half) ? GetNumCorners(half) : 1; }
-    /// Those of the face.
+    /// The patches of the face.
     int GetNumPatches() const { return GetNumPatches(0) + (IsCut() ? GetNumPatches(1) : 0); }
     /// The place in the face of a corner of a cell, or of the edge that is so many sides behind its first, which is the
     /// diagonal where the face is cut.
@@ -50,11 +50,11 @@ struct FaceCells {
     bool isHalf;     ///< a half face
 };
 
-/// Those of a face without a sharp diagonal, or of half a face.
+/// Returns the cells of a face without a sharp diagonal, or of half a face.
 constexpr FaceCells MakeFaceCells(FaceShape shape) {
     return {shape.size, HasHalves(shape.size) && !shape.isHalf ? kDiagonalEnd : 0, shape.isHalf};
 }
-/// Those of a face.
+/// Returns the cells of a face.
 FaceCells FindFaceCells(Level const &level, Far::Index face);
 
 /// \brief Which cells of which levels are patches: together they are all of the surface but its holes.

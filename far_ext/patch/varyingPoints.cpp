@@ -58,7 +58,7 @@ VaryingPoints::VaryingPoints(TopologyRefiner const &refiner, int channel, PatchC
                 }
                 continue;
             }
-            // Of half a polygon at a third of the line to what is across.
+            // The centre of half a polygon lies at a third of the line to the corner or side across.
             std::size_t const across = size / 2 + 1;
             std::size_t const beforeAcross = (size + 1) / 2;
             Index const center = addPoint(

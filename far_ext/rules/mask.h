@@ -162,7 +162,7 @@ struct QuadMask {
     double inQuad[4]; ///< of the F-vertices of the quad
     /// The rows of \c beside that there are: 0 where all hexagons have the same mask.
     int numRows;
-    /// Of the F-vertex of a hexagon at an end of the shared edge, along that edge first; and at a vertex
+    /// Weights of the F-vertex of a hexagon at an end of the shared edge, along that edge first; and at a vertex
     /// that is one edge away from it, away from it first.
     double beside[kNumRows][6];
 };

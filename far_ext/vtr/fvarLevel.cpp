@@ -183,7 +183,7 @@ void relateVFaces(Refinement const &mesh, Refinement const &values, FVarLevel co
         for (int i = 0; i < verts.size(); ++i) {
             bool const isNext =
                 values.isTruncation && i + 1 < verts.size() && verts[i + 1] < cValues.numVVertices;
-            // That at the far end of a boundary has no corner.
+            // The vertex at the far end of a boundary has no corner.
             Index const corner = values.GetChildVertexCorner(verts[i]);
             if (0 <= corner && corner < pValues.numCorners && !isNext) {
                 vFaceOfCorner[corner] = face;

@@ -113,7 +113,7 @@ private:
     void forEachMarked(Index begin, Index end, FUNCTION const &function) const;
     void findCorners();
     IrregularCorner *writeCorners(Index face, Mark mark, IrregularCorner *next) const;
-    // Of the masks beside the quad on a side of an E-face.
+    // Returns the share of the masks beside the quad on a side of an E-face.
     float findShareBesideQuad(Index face, EFaceSide const &side) const {
         float sharpness = _level.GetDiagonalSharpness(face);
         if (!_level.crossedFaces.empty()) { // which a quad may be

@@ -108,7 +108,7 @@ struct IrregularCorner {
 /// \brief A corner of a face beside a line that is regular there, behind a truncation.
 struct LineRowCorner {
     Far::Index corner;
-    /// Of the least sharp of the line's edges that make it regular, less one for each step.
+    /// Sharpness of the least sharp of the line's edges that make it regular, less one for each step.
     float sharpness;
     LineFace face;
     std::uint16_t place; ///< of the corner in the face
@@ -122,7 +122,7 @@ struct LineRowCorner {
 /// Each begins with its corner, and has no padding: behind the corner, equal bytes are equal tags.
 struct CornerTags {
     std::vector<SectorCorner> sectorCorners; ///< of a corner by kind
-    // Those with FaceMask::Smooth; empty with other masks.
+    // Tags of FaceMask::Smooth; empty with other masks.
     std::vector<IrregularCorner> irregularCorners; ///< one for a corner at most
     std::vector<LineRowCorner> lineRowCorners;     ///< more than one between lines
     QuadCorners quadCorners;                       ///< one for a corner at most
@@ -160,7 +160,7 @@ OpenSubdiv::Vtr::ConstArray<TAG> FindCornerTags(std::vector<TAG> const &tags, Fa
     return {tags.data() + (first - tags.begin()), int(last - first)};
 }
 
-/// \brief Those of a QuadCorners.
+/// \brief A range of tags in a QuadCorners.
 struct QuadCornerRange {
     QuadCorners::Iterator first;
     QuadCorners::Iterator behind;
@@ -469,7 +469,7 @@ struct Level : CornerTags {
     Buffer<float> diagonalSharpness; ///< by face
     std::vector<CrossedFace>
         crossedFaces; ///< ascending; the same at all levels behind a truncation
-    /// Those of them whose diagonals are infinitely sharp, of the level that a truncation makes.
+    /// The crossed faces whose diagonals are infinitely sharp, in the level that a truncation makes.
     std::vector<CrossedFace> cutFaces;
     Buffer<float> vertSharpness;     ///< of the vertices of level 0, the only ones that have any
     Buffer<unsigned char> faceHoles; ///< by face: bit h is set when half h lies in holes

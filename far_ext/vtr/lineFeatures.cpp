@@ -38,7 +38,7 @@ public:
         : _creasing(options.sdcOptions), _sdcOptions(options.sdcOptions), _refinement(refinement),
           _parent(*refinement.parent), _level(level) {}
 
-    // Those of a level that a truncation made.
+    // Finds the tags of a level that a truncation made.
     void Begin();
     void GoOn();
 
@@ -114,7 +114,7 @@ void LineRowFinder::addHalf(Index face, int half, float sharpness) {
     }
 }
 
-// Of the line where it goes on beyond an end of an edge, across half a polygon; 0 where it does not.
+// Returns the sharpness of the line beyond an end of an edge, across half a polygon; 0 where it ends.
 float LineRowFinder::findSharpnessBeyond(Index edge, Index vert) const {
     for (Index k = _level.vertFirstFace[vert]; k < _level.vertFirstFace[vert + 1]; ++k) {
         Index const face = _level.vertFaces[k];

@@ -14,7 +14,7 @@ namespace OpenSubdivHex::FarExt::internal {
 /// faces of these, and at the hexagons behind and beyond.  The next steps go on from the parent's.
 void FindLineRowCorners(TagOptions options, Refinement const &refinement, Level &level);
 
-/// \brief What the F-face of a face of \p faceSize corners has at the same corner, if anything.
+/// \brief Returns the tag that the F-face of a face of \p faceSize corners has at the same corner, if any.
 std::optional<LineRowCorner> FindLineRowOfFFace(LineRowCorner const &parent, int faceSize,
                                                 Sdc::Options sdcOptions);
 

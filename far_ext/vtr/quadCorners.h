@@ -36,7 +36,7 @@ public:
     OPENSUBDIVHEX_API void clear();
     /// A corner behind all others.
     OPENSUBDIVHEX_API void push_back(QuadCorner const &quad);
-    /// Those of \p flags, by corner, in the place of all others.
+    /// Replaces all tags by \p flags, by corner.
     void Assign(Buffer<QuadFlags> const &flags);
 
     /// None if the corner has none.

@@ -113,7 +113,7 @@ bool QuadFinder::readParent() {
                        [](QuadFlags flags) { return flags.HasAny(); });
 }
 
-// Those of the level that flags of the parent make which go on, ascending.
+// Lists the faces of the level that flags of the parent make which go on, ascending.
 std::vector<Index> QuadFinder::listFaces() const {
     std::vector<Index> faces;
     auto const addEFace = [&](Index edge) {

@@ -47,7 +47,7 @@ struct Refinement {
     Index GetFaceParentCorner(Index cFace) const {
         return GetChildVertexCorner(child->faceVerts[child->faceFirstCorner[cFace + 1] - 1]);
     }
-    /// Of a V-face that is crossed: that of its first vertex, which is beside half 1.
+    /// For a V-face that is crossed: the parent corner of its first vertex, which is beside half 1.
     Index GetFaceFirstParentCorner(Index cFace) const {
         return GetChildVertexCorner(child->faceVerts[child->faceFirstCorner[cFace]]);
     }

@@ -9,7 +9,7 @@
 
 namespace OpenSubdivHex::FarExt::internal {
 
-/// \brief What the truncation of a mesh does to the polygon of a vertex where an edge ends.
+/// \brief The effect of a truncation on the polygon of a vertex where an edge ends.
 enum class EndCut : unsigned char {
     Whole, ///< nothing
     Cut,   ///< cuts it along a spoke to the vertex, which stays

@@ -96,7 +96,7 @@ CornerRow findRow(int numSteps, LineRowCorner const &tag) {
     return {};
 }
 
-/// What is computed with at once: a position, or x, y, and what x and y are lifted to.
+/// Columns that are computed at once: a position, or x, y, and the lifts of x and y.
 constexpr int kNumColumns = 5;
 using Points = Eigen::Matrix<double, Eigen::Dynamic, kNumColumns, Eigen::RowMajor>;
 
@@ -416,7 +416,7 @@ public:
         return Eigen::Map<Eigen::VectorXd const>(values.data(), Eigen::Index(values.size()));
     }
 
-    /// What the weights leave to 1, where that is below 0.
+    /// The difference of 1 and the sum of the weights, where it is below 0.
     Eigen::VectorXd MeasureRest(LineMasks const &masks) const {
         constexpr double kOfNegative = 10;
         std::vector<double> values;
@@ -595,7 +595,7 @@ private:
     Shape const _shape;
     Surface _surface;
     Points _lifted;
-    // Of the chosen vertices; the sum of areas is 1, and groups are by distance from the border.
+    // The chosen vertices; the sum of areas is 1, and groups are by distance from the border.
     std::vector<int> _vertices;
     std::vector<int> _groups;
     std::vector<double> _areas;

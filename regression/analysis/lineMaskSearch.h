@@ -19,7 +19,7 @@ namespace OpenSubdivHex::Regression {
 /// that mean deviates by from the exact one, and of what the weights differ by from those of later levels.  Points on
 /// the line are not searched for: they follow from the line alone.
 ///
-/// What rows, and V', leave to 1 is at least 0.
+/// The weights of rows, and of V', sum up to 1 at most.
 class LineMaskSearch {
 public:
     /// \param level  at which surfaces are judged: 4 or more
@@ -33,7 +33,7 @@ public:
     /// Where a search begins: with the masks of hexagons and half hexagons, and V', of later levels.
     Eigen::VectorXd GetStart() const;
 
-    /// What a search makes small.
+    /// The measure that a search makes small.
     Eigen::VectorXd Measure(Eigen::VectorXd const &weights) const;
 
     /// How uneven a surface is.

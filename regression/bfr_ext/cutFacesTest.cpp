@@ -172,7 +172,7 @@ TEST_P(CutFacesTest, AreTwoHalves) {
     EXPECT_GT(sizes.size(), 1u);
 }
 
-// Those of the two planes, as far apart as these; positions are in the plane.
+// Normals are those of the two planes; positions are in the plane.
 TEST_P(CutFacesTest, HaveTheNormalsOfTheirSides) {
     Roof const roof;
     Made const made(roof.shape, GetParam());
@@ -203,7 +203,7 @@ TEST_P(CutFacesTest, HaveTheNormalsOfTheirSides) {
     EXPECT_EQ(numPlaces, 6 * (kNumX - 1));
 }
 
-// Of a crease that fades no face is cut: it is smooth there.
+// A crease that fades cuts no face: the surface is smooth there.
 TEST_P(CutFacesTest, AreNotThereWhereACreaseFades) {
     for (float const sharpness : {0.5F, 1.0F, 3.0F, 9.5F}) {
         Made const made(Roof(sharpness).shape, GetParam());

@@ -270,7 +270,7 @@ TaggedMatch::Place TaggedMatch::placeOfVFace(TaggedMesh::Face const &face, VFace
     return place;
 }
 
-// Of a half of a V-face that a crease or seam crosses.
+// The place of a half of a V-face that a crease or seam crosses.
 TaggedMatch::Place TaggedMatch::placeOfHalfVFace(std::vector<int> const &vertices,
                                                  int level) const {
     TopologyLevel const &library = _refiner.GetLevel(level);
@@ -288,7 +288,7 @@ TaggedMatch::Place TaggedMatch::placeOfHalfVFace(std::vector<int> const &vertice
                 corners.push_back(FarExt::GetPlaceInHalves(half, i, end));
                 ofHalf.push_back(all[corners.back()]);
             }
-            // Of a channel the end of a seam has no vertex of the mesh of its own.
+            // In a channel the end of a seam has no vertex of the mesh of its own.
             bool isSame = ofHalf.size() == vertices.size();
             for (std::size_t i = _channel < 0 ? 0 : 1; isSame && i < vertices.size(); ++i) {
                 isSame = ofHalf[i] == vertices[i];

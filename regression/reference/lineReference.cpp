@@ -136,7 +136,7 @@ private:
         return other && _mesh.faces[other->face].isHalf &&
                _mesh.faces[other->face].vertices.size() == 4;
     }
-    /// Of the line whose half hexagon has this edge opposite to it.
+    /// Sharpness of the line whose half hexagon has this edge opposite to it.
     float lineBefore(Side side) const {
         std::optional<Side> const other = across(side);
         if (!other || other->place != 2) {
@@ -146,7 +146,7 @@ private:
         return half.isHalf && half.vertices.size() == 4 ? _mesh.edges[half.edges[0]].regularLine
                                                         : 0;
     }
-    /// Of the line on the opposite edge of the hexagon across.
+    /// Sharpness of the line on the opposite edge of the hexagon across.
     float lineBeyondHexagon(Side side) const {
         std::optional<Side> const other = across(side);
         if (!other) {
@@ -158,7 +158,7 @@ private:
                 _mesh.edges[face.edges[std::size_t((other->place + 3) % 6) % face.edges.size()]];
             return face.vertices.size() == 6 && !opposite.isLong ? opposite.regularLine : 0;
         }
-        // Of two halves, the opposite edge is in the other.
+        // The opposite edge of a half lies in the other half.
         Edge const &line = _mesh.edges[face.edges[0]];
         if (line.sides.size() == 1 || face.vertices.size() != 4 || other->place == 0) {
             return 0;

@@ -492,7 +492,7 @@ private:
         return sum;
     }
 
-    /// What the row of half a hexagon changes, of a line that is as sharp.
+    /// The change that the row of half a hexagon makes, for a line that is as sharp.
     Point fromLine(Face const &face, Side corner, double sharp) const {
         std::optional<LineRule> const rule = lineRuleOf(corner);
         if (!rule || !rule->isOfHalf || rule->weights.empty()) {

@@ -123,7 +123,7 @@ TaggedMesh MakeValueMesh(TaggedMesh const &mesh, std::vector<int> const &valueIn
                          std::vector<float> const &valueSharpness,
                          std::vector<int> &valuesOfVertices);
 
-/// \brief What a truncation makes of the polygons of vertices.
+/// \brief The effect of a truncation on the polygons of vertices.
 struct ReferenceCuts {
     /// By face and place: whether the edge that begins there cuts the polygon of the vertex there.
     std::vector<std::vector<bool>> cuts;

@@ -83,7 +83,7 @@ ReferenceCuts FindCuts(TaggedMesh const &mesh, std::vector<TaggedMesh> const &va
                 int const before = ends[1] - ends[0];
                 isPassed = isPassed && 2 <= before && before <= 64 && 2 <= size - before &&
                            size - before <= 64;
-                // What is apart must be so for ever.
+                // Faces that are kept apart must stay so.
                 for (int end : ends) {
                     bool const isForEver =
                         edgeOf(mesh, corners[ends[0]]).sharpness >= kInfiniteSharpness &&
