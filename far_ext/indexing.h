@@ -70,8 +70,12 @@ constexpr int GetPlaceInHalves(int half, int i, int end) {
 constexpr int GetHalfSize(int half, int numVertices, int end) {
     return half == 1 ? end + 1 : numVertices - end + 1;
 }
-/// The half that edge \p local of a hexagon belongs to, whose edge local % 3 + 1 it is.
-constexpr int GetHalfOfEdge(int local) { return local < kDiagonalEnd ? 1 : 0; }
+/// The half that edge \p local of a face belongs to, by default of a hexagon.
+constexpr int GetHalfOfEdge(int local, int end = kDiagonalEnd) { return local < end ? 1 : 0; }
+/// Which edge of its half edge \p local of a face is: 1 or more, since the diagonal is edge 0 of each half.
+constexpr int GetEdgeInHalf(int local, int end = kDiagonalEnd) {
+    return local < end ? local + 1 : local - end + 1;
+}
 /// A face of \p numCorners corners that an edge made has two halves if it is a hexagon.
 constexpr bool HasHalves(int numCorners) { return numCorners == 6; }
 

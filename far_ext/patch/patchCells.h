@@ -39,9 +39,11 @@ struct FaceCells {
     }
     /// @name The cell that has edge \p local of the face, and which side of the cell that is
     /// @{
-    int GetHalfOfEdge(int local) const { return IsCut() && local < diagonalEnd ? 1 : 0; }
+    int GetHalfOfEdge(int local) const {
+        return IsCut() ? FarExt::GetHalfOfEdge(local, diagonalEnd) : 0;
+    }
     int GetSideOfEdge(int local) const {
-        return !IsCut() ? local : local < diagonalEnd ? local + 1 : local - diagonalEnd + 1;
+        return IsCut() ? GetEdgeInHalf(local, diagonalEnd) : local;
     }
     /// @}
 

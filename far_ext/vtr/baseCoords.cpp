@@ -70,7 +70,7 @@ PlacedCell place(MeshLevels const &mesh, int baseDepth, int depth, Cell cell) {
     } else {
         auto const &corners = placed.quad.corners;
         bool const isHexagon = HasHalves(parent.GetFaceSize(pCell.face));
-        int const start = isHexagon ? local % kDiagonalEnd + 1 : local;
+        int const start = isHexagon ? GetEdgeInHalf(local) : local;
         placed.quad =
             makeQuad(corners[start], corners[(start + 1) % kNumHalfCorners], center, isHalf);
     }

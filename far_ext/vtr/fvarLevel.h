@@ -22,9 +22,8 @@ struct FVarLevel {
     Index GetFaceEdge(Index face, int local) const {
         Index valueFace = valueFaces[face];
         if (SplitFace const *split = FindSplitFace(face)) {
-            bool const inFirst = local >= split->end;
-            valueFace = split->valueFaces[inFirst ? 0 : 1];
-            local = inFirst ? local - split->end + 1 : local + 1;
+            valueFace = split->valueFaces[GetHalfOfEdge(local, split->end)];
+            local = GetEdgeInHalf(local, split->end);
         }
         return values->faceEdges[values->faceFirstCorner[valueFace] + local];
     }

@@ -326,7 +326,9 @@ struct Level : CornerTags {
     }
     bool HasFaceHalves(Index f) const { return HasHalves(GetFaceSize(f)) || FindCrossedFace(f); }
     /// The half that edge \p local of a face belongs to, if it has halves.
-    int GetHalfOfFaceEdge(Index f, int local) const { return local < GetDiagonalEnd(f) ? 1 : 0; }
+    int GetHalfOfFaceEdge(Index f, int local) const {
+        return GetHalfOfEdge(local, GetDiagonalEnd(f));
+    }
     /// @}
     float GetDiagonalSharpness(Index f) const {
         return diagonalSharpness.empty() ? 0 : diagonalSharpness[f];

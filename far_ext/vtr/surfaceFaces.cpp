@@ -84,8 +84,7 @@ auto SurfaceFaces::GetSideOfPlace(Index levelFace, int place) const -> Side {
     if (!cut) {
         return {levelFace, place};
     }
-    return place < cut->end ? Side{GetFace({levelFace, 1}), place + 1}
-                            : Side{levelFace, place - cut->end + 1};
+    return {GetFace({levelFace, GetHalfOfEdge(place, cut->end)}), GetEdgeInHalf(place, cut->end)};
 }
 
 std::vector<Far::Index> SurfaceFaces::GetVertexFaces(Index vert) const {

@@ -30,13 +30,13 @@ namespace {
 
 using FarExt::FaceMask;
 using FarExt::HexSchemeOptions;
+using FarExt::kHexagon;
 using FarExt::internal::FindLineRow;
 using FarExt::internal::Level;
 using FarExt::internal::LineFace;
 using FarExt::internal::LineRowCorner;
 using FarExt::internal::RefinementRules;
 
-constexpr int kHexagon = 6;
 constexpr int kTrapezoid = 4;
 constexpr double kParts = 4096;
 HexSchemeOptions const kTruncate{FaceMask::Smooth, FarExt::SchemeType::Hexagonal,

@@ -32,13 +32,13 @@ namespace {
 
 using FarExt::FaceMask;
 using FarExt::HexSchemeOptions;
+using FarExt::kHexagon;
 using FarExt::internal::Level;
 using FarExt::internal::QuadCorner;
 using FarExt::internal::QuadRow;
 using FarExt::internal::RefinementRules;
 
 constexpr int kQuad = 4;
-constexpr int kHexagon = 6;
 constexpr int kNumRegular = 4; // faces at a vertex
 constexpr int kNumInQuads = FarExt::kNumStepsToConstantMasks - 1;
 constexpr double kParts = 4096;
