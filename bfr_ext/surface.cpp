@@ -89,10 +89,9 @@ void Surface<REAL>::BoundControlPointsFromMesh(REAL const meshPoints[],
 
 template <typename REAL>
 int Surface<REAL>::GetNumPatchPoints() const {
-    return IsValid() ? GetNumControlPoints() +
-                           internal::kNumPatchPoints *
-                               internal::GetNumFacePatches(GetFaceShape(), _patchLevel)
-                     : 0;
+    int const numPatches =
+        IsValid() && !hasPatchRows() ? internal::GetNumFacePatches(GetFaceShape(), _patchLevel) : 0;
+    return GetNumControlPoints() + internal::kNumPatchPoints * numPatches;
 }
 
 template <typename REAL>
@@ -104,7 +103,7 @@ void Surface<REAL>::ComputePatchPoints(REAL patchPoints[],
 template <typename REAL>
 void Surface<REAL>::ComputePatchPoints(REAL patchPoints[], PointDescriptor const &patchPointDesc,
                                        int numPlaces, REAL const uvs[]) const {
-    if (!IsValid()) {
+    if (!IsValid() || hasPatchRows()) {
         return;
     }
     if (numPlaces >= internal::GetNumFacePatches(GetFaceShape(), _patchLevel)) {
@@ -128,13 +127,29 @@ void Surface<REAL>::ComputePatchPoints(REAL patchPoints[], PointDescriptor const
 template <typename REAL>
 void Surface<REAL>::computePatchPoints(REAL patchPoints[], PointDescriptor const &patchPointDesc,
                                        std::vector<int> const *patches) const {
-    if (!IsValid()) {
+    if (!IsValid() || hasPatchRows()) {
         return;
     }
     REAL *const points =
         patchPoints + std::ptrdiff_t(GetNumControlPoints()) * patchPointDesc.stride;
-    internal::MakeFacePatchPoints(GetFace().type, GetFaceSize(), _patchLevel, patchPoints,
-                                  patchPointDesc.size, patchPointDesc.stride, patches, points);
+    internal::MakeFacePatchPoints(GetFace().type, _patchLevel, patchPoints, patchPointDesc.size,
+                                  patchPointDesc.stride, patches, points);
+}
+
+// Whether patches are sums of the control points.
+template <typename REAL>
+bool Surface<REAL>::hasPatchRows() const {
+    return GetFace().type.IsInLattice();
+}
+
+template <typename REAL>
+internal::PatchRows<REAL> const &Surface<REAL>::findPatchRows() const {
+    auto const *rows = _patchRows.Get();
+    if (!rows) {
+        rows = &internal::PatchRows<REAL>::Get(GetFace().type, _patchLevel);
+        _patchRows.Set(rows);
+    }
+    return *rows;
 }
 
 template <typename REAL>
@@ -142,10 +157,11 @@ template <int NUM_DERIVATIVES>
 void Surface<REAL>::evaluate(REAL const uv[2], REAL const patchPoints[],
                              PointDescriptor const &pointDesc, REAL *const results[6]) const {
     if (IsValid()) {
+        internal::PatchRows<REAL> const &rows = findPatchRows();
+        std::ptrdiff_t const first = rows.IsEmpty() ? _numControlPoints : 0;
         internal::EvaluatePlace<NUM_DERIVATIVES>(
-            _parameterization, GetFaceShape(), {double(uv[0]), double(uv[1])}, _patchLevel,
-            patchPoints + std::ptrdiff_t(_numControlPoints) * pointDesc.stride, pointDesc.size,
-            pointDesc.stride, results);
+            _parameterization, GetFaceShape(), {double(uv[0]), double(uv[1])}, _patchLevel, rows,
+            patchPoints + first * pointDesc.stride, pointDesc.size, pointDesc.stride, results);
     }
 }
 

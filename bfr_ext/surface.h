@@ -8,6 +8,7 @@
 #include <opensubdiv/far/types.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cstddef>
 #include <memory>
 #include <vector>
@@ -22,6 +23,26 @@ namespace internal {
 class BaseType;
 template <typename TYPE>
 struct KeptFace;
+template <typename REAL>
+class PatchRows;
+
+/// A pointer that threads may set at once, to the same.
+template <typename T>
+class SharedPointer {
+public:
+    SharedPointer() = default;
+    SharedPointer(SharedPointer const &other) noexcept : _pointer(other.Get()) {}
+    SharedPointer &operator=(SharedPointer const &other) noexcept {
+        Set(other.Get());
+        return *this;
+    }
+
+    T *Get() const { return _pointer.load(std::memory_order_acquire); }
+    void Set(T *pointer) { _pointer.store(pointer, std::memory_order_release); }
+
+private:
+    std::atomic<T *> _pointer{nullptr};
+};
 } // namespace internal
 
 /// \brief The limit surface of a base face, as Bfr::Surface: a function of u and v.
@@ -133,18 +154,24 @@ public:
                              REAL controlPoints[], PointDescriptor const &controlPointDesc) const {
         Index const *const points = getPoints();
         Index const *const end = points + GetNumControlPoints();
-        for (Index const *point = points; point != end; ++point) {
-            REAL_MESH const *const from =
-                meshPoints + std::ptrdiff_t(*point) * meshPointDesc.stride;
-            if (meshPointDesc.size == 3) { // by far the most
-                controlPoints[0] = REAL(from[0]);
-                controlPoints[1] = REAL(from[1]);
-                controlPoints[2] = REAL(from[2]);
-            } else {
-                std::transform(from, from + meshPointDesc.size, controlPoints,
-                               [](REAL_MESH number) { return REAL(number); });
+        auto const gather = [&](auto const &copy) {
+            REAL *to = controlPoints;
+            for (Index const *point = points; point != end; ++point) {
+                copy(meshPoints + std::ptrdiff_t(*point) * meshPointDesc.stride, to);
+                to += controlPointDesc.stride;
             }
-            controlPoints += controlPointDesc.stride;
+        };
+        if (meshPointDesc.size == 3) { // by far the most
+            gather([](REAL_MESH const *from, REAL *to) {
+                to[0] = REAL(from[0]);
+                to[1] = REAL(from[1]);
+                to[2] = REAL(from[2]);
+            });
+        } else {
+            gather([&](REAL_MESH const *from, REAL *to) {
+                std::transform(from, from + meshPointDesc.size, to,
+                               [](REAL_MESH number) { return REAL(number); });
+            });
         }
     }
     /// Writes the box of the control points, in which the surface lies.
@@ -157,11 +184,12 @@ public:
     /// @}
 
     /// @name Patch points
-    /// The points that Evaluate() at (u, v) takes: the control points, then 20 points of each bicubic Gregory patch.  Make
-    /// them once for the points of a mesh; they serve any number of evaluations.
+    /// The points that Evaluate() at (u, v) takes: the control points and, but for faces in regular lattices of quads, triangles
+    /// or hexagons, 20 points of each bicubic Gregory patch behind them.  In lattices few types of faces share the weights that
+    /// make patches of control points.  Make them once for the points of a mesh; they serve any number of evaluations.
     /// @{
 
-    /// Control points and points of patches.
+    /// Control points, and points of patches where the face has these.
     int GetNumPatchPoints() const;
     /// Copies the control points from those of the mesh, and computes the points of patches.
     void PreparePatchPoints(REAL const meshPoints[], PointDescriptor const &meshPointDesc,
@@ -173,7 +201,8 @@ public:
     void ComputePatchPoints(REAL patchPoints[], PointDescriptor const &patchPointDesc) const;
     /// \brief Computes those alone that Evaluate() takes at some places, where they are few: in a fraction of the time.
     ///
-    /// \param patchPoints  GetNumPatchPoints(), the control points being there; others are left as they are
+    /// \param patchPoints  GetNumPatchPoints(), the control points being there; others are left as they are.  Where there
+    ///                     are no others, nothing is written
     /// \param numPlaces    how many places there are
     /// \param uvs          u and v of each
     void ComputePatchPoints(REAL patchPoints[], PointDescriptor const &patchPointDesc,
@@ -272,6 +301,8 @@ private:
     Index const *getPoints() const;
     void computePatchPoints(REAL patchPoints[], PointDescriptor const &patchPointDesc,
                             std::vector<int> const *patches) const;
+    bool hasPatchRows() const;
+    internal::PatchRows<REAL> const &findPatchRows() const;
     template <int NUM_DERIVATIVES>
     void evaluate(REAL const uv[2], REAL const patchPoints[], PointDescriptor const &pointDesc,
                   REAL *const results[6]) const;
@@ -283,6 +314,7 @@ private:
     std::shared_ptr<void const> _owner; // of what the face refers to; null of an invalid surface
     internal::KeptFace<internal::BaseType> const *_keptFace = nullptr; // the owner's; null: its own
     std::vector<std::byte> _ownFace;
+    mutable internal::SharedPointer<internal::PatchRows<REAL> const> _patchRows; // found on demand
     int _patchLevel = 0;
     int _numControlPoints = 0; // the face's, without a look at it
     Parameterization _parameterization;

@@ -2,18 +2,14 @@
 #include "facePatches.h"
 
 #include "baseType.h"
-#include "patchSums.h"
-#include "placeKernel.h"
-#include "refinedCells.h"
 
-#include "far_ext/patch/cellPatchPoints.h"
 #include "far_ext/vtr/inline.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <limits>
+#include <numeric>
 #include <type_traits>
 #include <utility>
 #include <vector>
@@ -86,64 +82,277 @@ std::vector<std::vector<double>> findRows(CellType const &type, int steps, Corne
     return rows;
 }
 
-// Returns them as a matrix, which cells of the type share whose corners are as old.
+// A row of the block of a patch whose points have these rows.
+std::vector<double> makePatchRow(std::vector<double> const *points, int row) {
+    std::vector<double> result = points[PatchRow::kPoints[row]];
+    if (row >= PatchRow::kNumBicubic) {
+        int const corner = row - PatchRow::kNumBicubic;
+        std::vector<double> const &second = points[PatchRow::kPoints[PatchRow::kOfCorners[corner]]];
+        for (std::size_t i = 0; i < result.size(); ++i) {
+            result[i] -= second[i];
+        }
+    }
+    return result;
+}
+
+// Whether some rows weigh a column by more than rounding; weights that are not numbers do.
+bool isUsed(std::vector<double> const *rows, std::size_t numRows, std::size_t column) {
+    constexpr double kRounding = 1e-15;
+    return !std::all_of(rows, rows + numRows, [&](std::vector<double> const &row) {
+        return std::abs(row[column]) <= kRounding;
+    });
+}
+
+// The points of all patches that a cell is, some levels on, as sums of points of the cell.
 template <typename REAL>
-PlaceMatrix<REAL> const &getMatrix(CellType const &type, int steps, CornerAges const &ages,
+struct PointMatrix {
+    explicit PointMatrix(std::vector<std::vector<double>> const &rows) {
+        for (std::size_t column = 0; column < rows[0].size(); ++column) {
+            if (isUsed(rows.data(), rows.size(), column)) {
+                columns.push_back(int(column));
+            }
+        }
+        columns.shrink_to_fit();
+        matrix = PlaceMatrix<REAL>(rows.size(), columns.size());
+        std::vector<double> used(columns.size());
+        for (std::size_t i = 0; i < rows.size(); ++i) {
+            std::vector<double> const row = makePatchRow(
+                &rows[i / kNumPatchPoints * kNumPatchPoints], int(i % kNumPatchPoints));
+            std::transform(columns.begin(), columns.end(), used.begin(),
+                           [&](int column) { return row[std::size_t(column)]; });
+            matrix.Set(i, used);
+        }
+    }
+    std::size_t GetHeapSize() const { return GetHeapSizes(columns, matrix); }
+
+    std::vector<int> columns; // those whose weights are not 0
+    PlaceMatrix<REAL> matrix;
+};
+
+// Returns the matrix that cells of the type share whose corners are as old.
+template <typename REAL>
+PointMatrix<REAL> const &getMatrix(CellType const &type, int steps, CornerAges const &ages,
                                    int numLevels) {
     PatchAges const limited = limitAges(steps, ages);
     std::vector<int> key = limited.ofVertices;
     key.push_back(limited.steps);
     key.push_back(numLevels);
-    return type.GetPatterns().Get<PlaceMatrix<REAL>>(
+    return type.GetPatterns().Get<PointMatrix<REAL>>(
         PatternTable::GetKind<REAL>(PatternOf::PatchPoints), key.data(), key.data() + key.size(),
-        [&] {
-            std::vector<std::vector<double>> const rows = findRows(type, steps, ages, numLevels);
-            PlaceMatrix<REAL> matrix(rows.size(), std::size_t(type.GetNumPoints()));
-            for (std::size_t i = 0; i < rows.size(); ++i) {
-                matrix.Set(i, rows[i]);
-            }
-            return matrix;
-        });
+        [&] { return PointMatrix<REAL>(findRows(type, steps, ages, numLevels)); });
 }
 
-// Sums up the points of consecutive patches of a face, as far as they are wanted.
-template <typename REAL>
-class PatchSummer {
-public:
-    PatchSummer(std::vector<int> const *wanted, int size, std::ptrdiff_t stride, REAL *points)
-        : _wanted(wanted), _size(size), _stride(stride), _points(points) {}
+// The first level whose cells are of few types, outside of lattices: irregular meshes have about as many
+// types of base faces and of their children as there are of these.
+constexpr int kCommonLevel = 2;
 
-    // Whether one of the next patches is wanted; if not, they are skipped.
-    bool SkipUnlessWanted(int numPatches) {
-        if (!_wanted || findWanted(_patch) != findWanted(_patch + numPatches)) {
-            return true;
-        }
-        _patch += numPatches;
-        return false;
-    }
-    // Makes the patch points of a matrix.
-    void SumUp(PlaceMatrix<REAL> const &matrix, REAL const *points, std::ptrdiff_t stride) {
-        auto const numPatches = int(matrix.GetNumPlaces()) / kNumPatchPoints;
-        PlaceSums<REAL> sums = {points,
-                                stride,
-                                std::size_t(_size),
-                                nullptr,
-                                _points + std::ptrdiff_t(_patch) * kNumPatchPoints * _stride,
-                                _stride};
-        if (_wanted) {
-            _runs.clear();
-            auto const end = findWanted(_patch + numPatches);
-            for (auto patch = findWanted(_patch); patch != end; ++patch) {
-                addRuns((*patch - _patch) * kNumPatchPoints);
+// The points of the patches in a child of a base face, as sums of what the step of the child makes.
+template <typename REAL>
+class ChildPatches {
+public:
+    // A child of its child.
+    struct Part {
+        PlaceMatrix<REAL> const *matrix;
+        std::size_t firstSource;
+    };
+
+    // order: the rows of the step in the order in which they come; null: in their own.
+    ChildPatches(CellType const &child, int level, std::vector<int> const *order) {
+        CornerAges const ages = child.IsWhole() ? CornerAges(std::size_t(child.GetNumCorners()), 0)
+                                                : CornerAges{-1, -1, 0, 0};
+        std::vector<CellType::Child> const &children = child.GetChildren();
+        forEachChild(
+            child.GetShape(), int(children.size()), ages, [&](int i, CornerAges const &ofChild) {
+                CellType::Child const &next = children[std::size_t(i)];
+                add(getMatrix<REAL>(*next.type, kCommonLevel, ofChild, level - kCommonLevel),
+                    next.step);
+            });
+        if (order) {
+            std::vector<int> places(child.GetStep().GetNumRows());
+            for (std::size_t i = 0; i < order->size(); ++i) {
+                places[std::size_t((*order)[i])] = int(i);
             }
-            sums.runs = _runs.data();
-            sums.numRuns = _runs.size();
+            for (int &source : _sources) {
+                source = places[std::size_t(source)];
+            }
         }
-        SumUpPlaces(matrix, sums);
-        _patch += numPatches;
+        _parts.shrink_to_fit();
+        _sources.shrink_to_fit();
+    }
+
+    std::size_t GetHeapSize() const { return GetHeapSizes(_parts, _sources); }
+    int GetNumPatches() const { return _numPatches; }
+    std::vector<Part> const &GetParts() const { return _parts; }
+    // By column of all matrices, the row of the step.
+    std::vector<int> const &GetSources() const { return _sources; }
+
+private:
+    void add(PointMatrix<REAL> const &ofCell, ChildStep const &step) {
+        // The rows that points of the cell are.
+        std::vector<double> numbers(step.GetNumRows());
+        std::iota(numbers.begin(), numbers.end(), 1.0);
+        std::vector<double> byRow;
+        step.Spread(numbers, byRow);
+        std::vector<int> rows(numbers.size());
+        for (std::size_t row = 0; row < byRow.size(); ++row) {
+            if (byRow[row] > 0) {
+                rows[std::size_t(byRow[row]) - 1] = int(row);
+            }
+        }
+        _parts.push_back({&ofCell.matrix, _sources.size()});
+        for (int const column : ofCell.columns) {
+            _sources.push_back(rows[std::size_t(column)]);
+        }
+        _numPatches += int(ofCell.matrix.GetNumPlaces()) / kNumPatchPoints;
+    }
+
+    int _numPatches = 0;
+    std::vector<Part> _parts;
+    std::vector<int> _sources;
+};
+
+// Those of a child, kept with it: of a CellType or a RingCell.
+template <typename REAL, typename CHILD>
+ChildPatches<REAL> const &getPatches(CHILD const &child, CellType const &type, int level,
+                                     std::vector<int> const *order) {
+    return child.GetPatterns().template Get<ChildPatches<REAL>>(
+        PatternTable::GetKind<REAL>(PatternOf::ChildPatches), &level, &level + 1,
+        [&] { return ChildPatches<REAL>(type, level, order); });
+}
+
+// Makes the points of the patches of a face outside of lattices, from its control points; scratch memory is kept for the
+// next face.
+template <typename REAL>
+class PointMaker {
+public:
+    // wanted: the patches, ascending; null: all
+    void Make(BaseType const &type, int level, REAL const *control, int size, std::ptrdiff_t stride,
+              std::vector<int> const *wanted, REAL *points) {
+        _level = level;
+        _size = std::size_t(size);
+        _paddedSize = StepMatrix::GetPaddedSize(_size);
+        _wanted = wanted;
+        _stride = stride;
+        _points = points;
+        _patch = 0;
+        if (PlainFaceType const *const plain = type.GetPlain()) {
+            makeOfRings(*plain, control);
+        } else {
+            makeOfSteps(*type, control);
+        }
     }
 
 private:
+    void makeOfRings(PlainFaceType const &type, REAL const *control) {
+        FaceRings const &face = type.GetRings();
+        _rings.Set(face.GetRings(), std::size_t(type.GetNumPoints()), nullptr, control, _stride,
+                   _size);
+        for (std::size_t i = 0; i <= face.GetRings().GetRings().size(); ++i) {
+            RingCell const &child = face.GetChild(i);
+            if (child.IsInner()) {
+                // What the step makes is there.
+                addChild(getPatches<REAL>(child, child.GetType(), _level, &child.GetColumns()),
+                         [&] {
+                             _indices.resize(child.GetColumns().size());
+                             face.FindChildIndices(i, _indices.data());
+                             return Refined{_rings.GetPoints(), _indices.data()};
+                         });
+                continue;
+            }
+            addChild(getPatches<REAL>(child, child.GetType(), _level, nullptr), [&] {
+                std::vector<int> const &columns = child.GetPoints().GetColumns();
+                _indices.resize(columns.size());
+                face.FindChildPoints(i, _indices.data());
+                grow(_ofChild, columns.size());
+                for (std::size_t column = 0; column < columns.size(); ++column) {
+                    std::copy_n(_rings.GetPoints() + std::size_t(_indices[column]) * _paddedSize,
+                                _paddedSize, &_ofChild[std::size_t(columns[column]) * _paddedSize]);
+                }
+                return refine(child.GetType());
+            });
+        }
+    }
+
+    void makeOfSteps(CellType const &type, REAL const *control) {
+        auto const numPoints = std::size_t(type.GetNumPoints());
+        grow(_ofChild, numPoints);
+        for (std::size_t i = 0; i < numPoints; ++i) {
+            StepMatrix::Pad(control + std::ptrdiff_t(i) * _stride, _size,
+                            &_ofChild[i * _paddedSize]);
+        }
+        StepMatrix const &step = type.GetStep();
+        grow(_ofFace, step.GetNumRows());
+        step.Apply(_ofChild.data(), _paddedSize, _ofFace.data());
+        for (CellType::Child const &child : type.GetChildren()) {
+            addChild(getPatches<REAL>(*child.type, *child.type, _level, nullptr), [&] {
+                grow(_ofChild, child.step.GetNumRows());
+                child.step.CopyPoints(_ofFace.data(), _paddedSize, _ofChild.data());
+                return refine(*child.type);
+            });
+        }
+    }
+
+    // What the step of a child makes.
+    struct Refined {
+        REAL const *points;
+        int const *indices; // which points they are; null: all in turn
+    };
+
+    Refined refine(CellType const &child) {
+        StepMatrix const &step = child.GetStep();
+        grow(_refined, step.GetNumRows());
+        step.Apply(_ofChild.data(), _paddedSize, _refined.data());
+        return {_refined.data(), nullptr};
+    }
+
+    // Adds the points of a child, for whose patches find() gives what its step makes.
+    template <typename FIND>
+    void addChild(ChildPatches<REAL> const &patches, FIND const &find) {
+        if (!isWanted(patches.GetNumPatches())) {
+            _patch += patches.GetNumPatches();
+            return;
+        }
+        Refined const refined = find();
+        std::vector<int> const *sources = &patches.GetSources();
+        if (refined.indices) {
+            _sources.resize(sources->size());
+            std::transform(sources->begin(), sources->end(), _sources.begin(),
+                           [&](int source) { return refined.indices[source]; });
+            sources = &_sources;
+        }
+        for (auto const &part : patches.GetParts()) {
+            sumUp(*part.matrix, refined.points, sources->data() + part.firstSource);
+        }
+    }
+
+    // Makes the points of some patches.
+    void sumUp(PlaceMatrix<REAL> const &matrix, REAL const *points, int const *indices) {
+        int const numPatches = int(matrix.GetNumPlaces()) / kNumPatchPoints;
+        PlaceSums<REAL> sums = {points,
+                                std::ptrdiff_t(_paddedSize),
+                                _size,
+                                indices,
+                                _points + std::ptrdiff_t(_patch) * kNumPatchPoints * _stride,
+                                _stride};
+        if (isWanted(numPatches)) {
+            if (_wanted) {
+                _runs.clear();
+                auto const end = findWanted(_patch + numPatches);
+                for (auto patch = findWanted(_patch); patch != end; ++patch) {
+                    addRuns((*patch - _patch) * kNumPatchPoints);
+                }
+                sums.runs = _runs.data();
+                sums.numRuns = _runs.size();
+            }
+            SumUpPlaces(matrix, sums);
+        }
+        _patch += numPatches;
+    }
+
+    // Whether one of the next patches is wanted.
+    bool isWanted(int numPatches) const {
+        return !_wanted || findWanted(_patch) != findWanted(_patch + numPatches);
+    }
     std::vector<int>::const_iterator findWanted(int patch) const {
         return std::lower_bound(_wanted->begin(), _wanted->end(), patch);
     }
@@ -155,56 +364,24 @@ private:
             row = next;
         }
     }
+    void grow(std::vector<REAL> &numbers, std::size_t numPoints) const {
+        numbers.resize(std::max(numbers.size(), numPoints * _paddedSize));
+    }
 
-    std::vector<int> const *const _wanted;
-    int const _size;
-    std::ptrdiff_t const _stride;
-    REAL *const _points;
+    int _level = 0;
+    std::size_t _size = 0; // of a point
+    std::size_t _paddedSize = 0;
+    std::vector<int> const *_wanted = nullptr;
+    std::ptrdiff_t _stride = 0;
+    REAL *_points = nullptr;
     int _patch = 0; // the next one
+    RingValues<REAL> _rings;
+    std::vector<REAL> _ofFace;  // what its step makes
+    std::vector<REAL> _ofChild; // points before its step
+    std::vector<REAL> _refined;
+    std::vector<int> _indices;
+    std::vector<int> _sources;
     std::vector<PlaceRun> _runs;
-};
-
-// Refines the points of cells as far as their types are many, and makes those of patches by matrices of these.
-template <typename REAL>
-class PointMaker {
-public:
-    PointMaker(RefinedCells &cells, int level, PatchSummer<REAL> &summer)
-        : _cells(cells), _level(level), _summer(summer) {}
-
-    void Make(std::size_t cell, CornerAges const &ages) {
-        FaceShape const shape = _cells[cell].GetShape();
-        int const numLevels = _level - _cells[cell].GetLevel();
-        if (!_summer.SkipUnlessWanted(shape.size > 0 ? GetNumFacePatches(shape, numLevels)
-                                                     : getNumHalfPatches(numLevels))) {
-            return;
-        }
-        if (_cells[cell].GetLevel() == RefinedCells::kFirstCommonLevel) {
-            add(_cells[cell], ages);
-            return;
-        }
-        std::size_t const first = _cells.GetFirstChild(cell);
-        std::size_t const numCells = _cells.GetSize();
-        forEachChild(shape, _cells.GetNumChildren(cell), ages,
-                     [&](int child, CornerAges const &ofChild) {
-                         Make(first + std::size_t(child), ofChild);
-                         _cells.Drop(numCells);
-                     });
-    }
-
-private:
-    void add(CellValues const &values, CornerAges const &ages) {
-        PlaceMatrix<REAL> const &matrix =
-            getMatrix<REAL>(values.GetType(), values.GetLevel(), ages, _level - values.GetLevel());
-        std::size_t const padded = values.GetPaddedSize();
-        double const *const point = values.GetPoint(0);
-        _values.assign(point, point + std::size_t(values.GetNumPoints()) * padded);
-        _summer.SumUp(matrix, _values.data(), std::ptrdiff_t(padded));
-    }
-
-    RefinedCells &_cells;
-    int const _level;
-    PatchSummer<REAL> &_summer;
-    std::vector<REAL> _values;
 };
 
 // The coordinates of a cell in which a patch is a bilinear quadrilateral, and where a place is in it.
@@ -555,89 +732,120 @@ PatchPlace FindPatchPlace(BfrPlace const &ofFace, FaceShape shape, int level, in
                                  : findPatchPlace<2>(ofFace, shape, level, onPatch);
 }
 
-namespace {
-
-// From the control points of a face that few are alike.
-template <typename TYPE, typename REAL>
-void makePoints(TYPE const &type, int faceSize, int level, REAL const *control, int size,
-                std::ptrdiff_t stride, PatchSummer<REAL> &summer) {
-    // Their memory is kept for the next face.
-    static thread_local RefinedCells cells;
-    static thread_local std::vector<double> packed;
-    packed.clear();
-    for (int i = 0; i < type.GetNumPoints(); ++i) {
-        REAL const *const point = control + i * stride;
-        packed.insert(packed.end(), point, point + size);
-    }
-    cells.SetBase(type, packed.data(), size);
-    PointMaker<REAL>(cells, level, summer)
-        .Make(RefinedCells::kBase, CornerAges(std::size_t(faceSize), -1));
-}
-
-} // namespace
-
 template <typename REAL>
-void MakeFacePatchPoints(BaseType const &type, int faceSize, int level, REAL const *control,
-                         int size, std::ptrdiff_t stride, std::vector<int> const *wanted,
-                         REAL *points) {
-    PatchSummer<REAL> summer(wanted, size, stride, points);
-    if (PlainFaceType const *const plain = type.GetPlain()) {
-        makePoints(*plain, faceSize, level, control, size, stride, summer);
-    } else if (type.IsInLattice()) {
-        summer.SumUp(getMatrix<REAL>(*type, 0, CornerAges(std::size_t(faceSize), -1), level),
-                     control, stride);
-    } else {
-        makePoints(*type, faceSize, level, control, size, stride, summer);
+void MakeFacePatchPoints(BaseType const &type, int level, REAL const *control, int size,
+                         std::ptrdiff_t stride, std::vector<int> const *wanted, REAL *points) {
+    if (!type.IsInLattice()) {
+        static thread_local PointMaker<REAL> maker;
+        maker.Make(type, level, control, size, stride, wanted, points);
     }
 }
 
 namespace {
 
-// Asks for the points of a patch, of three numbers each, so that they are on their way while its weights are computed,
-// and those of the next place as well: benchmark places of surfaces is 1.5 times as fast.
+// Asks for numbers, so that they are on their way while the weights of a patch are computed, and those of the next place
+// as well: benchmark places of surfaces is 1.5 times as fast.
 template <typename REAL>
-OPENSUBDIVHEX_INLINE void prefetch([[maybe_unused]] REAL const *points) {
+OPENSUBDIVHEX_INLINE void prefetch([[maybe_unused]] REAL const *numbers,
+                                   [[maybe_unused]] std::ptrdiff_t count) {
 #if defined(__GNUC__)
-    constexpr int kLine = 64 / sizeof(REAL);
-    constexpr int kLast = 3 * kNumPatchPoints - 1;
-    for (int i = 0; i < kLast; i += kLine) {
-        __builtin_prefetch(points + i);
+    constexpr std::ptrdiff_t kLine = 64 / sizeof(REAL);
+    for (std::ptrdiff_t i = 0; i < count - 1; i += kLine) {
+        __builtin_prefetch(numbers + i);
     }
-    __builtin_prefetch(points + kLast);
+    __builtin_prefetch(numbers + count - 1);
 #endif
 }
 
 } // namespace
 
-template <int NUM_DERIVATIVES, typename REAL>
-void EvaluatePlace(Bfr::Parameterization const &parameterization, FaceShape shape, Pair const &uv,
-                   int level, REAL const *points, int size, std::ptrdiff_t stride,
-                   REAL *const *results) {
-    auto const getPoints = [&](int patch) {
-        return points + std::ptrdiff_t(patch) * kNumPatchPoints * stride;
-    };
-    PatchPlace const place =
-        findPatchPlace<NUM_DERIVATIVES>(FindBfrPlace(parameterization, shape, uv, 0), shape, level,
-                                        [&](int patch) { prefetch(getPoints(patch)); });
-    SumUpPatch(PatchWeights<NUM_DERIVATIVES, REAL>(place), getPoints(place.patch), size, stride,
-               results);
+template <typename REAL>
+PatchRows<REAL> const &PatchRows<REAL>::Get(BaseType const &type, int level) {
+    static PatchRows const kNone;
+    if (!type.IsInLattice()) {
+        return kNone;
+    }
+    return type->GetPatterns().Get<PatchRows>(
+        PatternTable::GetKind<REAL>(PatternOf::PatchRows), &level, &level + 1, [&] {
+            CornerAges const ages(std::size_t(type->GetNumCorners()), -1);
+            return PatchRows(findRows(*type, 0, ages, level));
+        });
 }
 
-template void MakeFacePatchPoints(BaseType const &, int, int, float const *, int, std::ptrdiff_t,
+template <typename REAL>
+PatchRows<REAL>::PatchRows(std::vector<std::vector<double>> const &rows) {
+    for (std::size_t first = 0; first < rows.size(); first += kNumPatchPoints) {
+        add(&rows[first]);
+    }
+    _endOfPoints = 1 + *std::max_element(_columns.begin(), _columns.end());
+}
+
+template <typename REAL>
+void PatchRows<REAL>::add(std::vector<double> const *points) {
+    Patch patch = {_weights.size(), _columns.size(), 0};
+    for (std::size_t column = 0; column < points->size(); ++column) {
+        if (isUsed(points, kNumPatchPoints, column)) {
+            _columns.push_back(int(column));
+            ++patch.numColumns;
+        }
+    }
+    _patches.push_back(patch);
+    auto const paddedSize = std::size_t(PatchBlock<REAL>::GetPaddedSize(patch.numColumns));
+    _weights.resize(patch.firstWeight + kNumPatchPoints * paddedSize);
+    REAL *to = _weights.data() + patch.firstWeight;
+    for (int row = 0; row < kNumPatchPoints; ++row, to += paddedSize) {
+        std::vector<double> const weights = makePatchRow(points, row);
+        for (std::size_t i = 0; i < std::size_t(patch.numColumns); ++i) {
+            to[i] = REAL(weights[std::size_t(_columns[patch.firstColumn + i])]);
+        }
+    }
+}
+
+template <int NUM_DERIVATIVES, typename REAL>
+void EvaluatePlace(Bfr::Parameterization const &parameterization, FaceShape shape, Pair const &uv,
+                   int level, PatchRows<REAL> const &rows, REAL const *points, int size,
+                   std::ptrdiff_t stride, REAL *const *results) {
+    bool const hasRows = !rows.IsEmpty();
+    auto const getPoints = [&](int patch) {
+        return hasRows ? points : points + std::ptrdiff_t(patch) * kNumPatchPoints * stride;
+    };
+    if (hasRows) {
+        prefetch(points, rows.GetEndOfPoints() * stride);
+    }
+    PatchPlace const place = findPatchPlace<NUM_DERIVATIVES>(
+        FindBfrPlace(parameterization, shape, uv, 0), shape, level, [&](int patch) {
+            if (!hasRows) {
+                prefetch(getPoints(patch), kNumPatchPoints * stride);
+            }
+        });
+    SumUpPatch(PatchWeights<NUM_DERIVATIVES, REAL>(place),
+               hasRows ? rows[place.patch] : PatchBlock<REAL>{nullptr, nullptr, kNumPatchPoints},
+               getPoints(place.patch), size, stride, results);
+}
+
+template class PatchRows<float>;
+template class PatchRows<double>;
+template void MakeFacePatchPoints(BaseType const &, int, float const *, int, std::ptrdiff_t,
                                   std::vector<int> const *, float *);
-template void MakeFacePatchPoints(BaseType const &, int, int, double const *, int, std::ptrdiff_t,
+template void MakeFacePatchPoints(BaseType const &, int, double const *, int, std::ptrdiff_t,
                                   std::vector<int> const *, double *);
 template void EvaluatePlace<0>(Bfr::Parameterization const &, FaceShape, Pair const &, int,
-                               float const *, int, std::ptrdiff_t, float *const *);
+                               PatchRows<float> const &, float const *, int, std::ptrdiff_t,
+                               float *const *);
 template void EvaluatePlace<0>(Bfr::Parameterization const &, FaceShape, Pair const &, int,
-                               double const *, int, std::ptrdiff_t, double *const *);
+                               PatchRows<double> const &, double const *, int, std::ptrdiff_t,
+                               double *const *);
 template void EvaluatePlace<1>(Bfr::Parameterization const &, FaceShape, Pair const &, int,
-                               float const *, int, std::ptrdiff_t, float *const *);
+                               PatchRows<float> const &, float const *, int, std::ptrdiff_t,
+                               float *const *);
 template void EvaluatePlace<1>(Bfr::Parameterization const &, FaceShape, Pair const &, int,
-                               double const *, int, std::ptrdiff_t, double *const *);
+                               PatchRows<double> const &, double const *, int, std::ptrdiff_t,
+                               double *const *);
 template void EvaluatePlace<2>(Bfr::Parameterization const &, FaceShape, Pair const &, int,
-                               float const *, int, std::ptrdiff_t, float *const *);
+                               PatchRows<float> const &, float const *, int, std::ptrdiff_t,
+                               float *const *);
 template void EvaluatePlace<2>(Bfr::Parameterization const &, FaceShape, Pair const &, int,
-                               double const *, int, std::ptrdiff_t, double *const *);
+                               PatchRows<double> const &, double const *, int, std::ptrdiff_t,
+                               double *const *);
 
 } // namespace OpenSubdivHex::BfrExt::internal

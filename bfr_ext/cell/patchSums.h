@@ -2,14 +2,53 @@
 #ifndef OPENSUBDIVHEX_BFR_EXT_CELL_PATCH_SUMS_H
 #define OPENSUBDIVHEX_BFR_EXT_CELL_PATCH_SUMS_H
 
-#include "facePatches.h"
+#include "halfCell.h"
 
+#include "far_ext/patch/cellPatchPoints.h"
 #include "far_ext/vtr/inline.h"
 
 #include <cstddef>
 #include <limits>
 
 namespace OpenSubdivHex::BfrExt::internal {
+
+using FarExt::internal::kNumPatchPoints;
+
+/// A place in one of the patches of a face; its derivatives are there as far as they were asked for.
+struct PatchPlace {
+    int patch;
+    double s;
+    double t;
+    Pair first[2];  ///< derivatives of s, and of t, by u and v
+    Pair second[3]; ///< of (s, t), by u twice, by u and v, by v twice
+};
+
+/// \brief The order in which the points of a Gregory patch are evaluated.
+///
+/// The first 16 rows are the points of the bicubic patch, row by row by t, each with the second of the two points inside of a
+/// corner.  The last four are what the first point inside of each corner, in turn, has more than the second.
+struct PatchRow {
+    static constexpr int kNumBicubic = 16;
+    /// By row, the point of the patch; of the last four the first point inside of a corner.
+    static constexpr int kPoints[kNumPatchPoints] = {0,  1,  7,  5,  2,  4,  9, 6, 16, 19,
+                                                     14, 12, 15, 17, 11, 10, 3, 8, 13, 18};
+    /// The rows of the second points inside of the corners.
+    static constexpr int kOfCorners[4] = {5, 6, 10, 9};
+};
+
+/// \brief The rows of a patch as sums of some points, the columns of a dense matrix.
+template <typename REAL>
+struct PatchBlock {
+    /// Columns are padded with zeros to a multiple of it.
+    static constexpr int kPadding = 32 / int(sizeof(REAL));
+    static int GetPaddedSize(int numColumns) {
+        return (numColumns + kPadding - 1) / kPadding * kPadding;
+    }
+
+    REAL const *weights; ///< row by row; null: the rows are the points
+    int const *columns;  ///< the points, ascending; null, too
+    int numColumns;
+};
 
 /// A coordinate in a patch, and the quadratic Bernstein polynomials there.
 template <typename REAL>
@@ -67,20 +106,24 @@ struct PatchWeights {
 
 /// \brief Writes the point of a patch, and its derivatives, in the order of EvaluatePlace(), by what the machine has.
 ///
-/// \param points   the patch's
+/// Each column is weighed first: the same bits for any size and stride of points, and with any derivatives beside.
+///
+/// \param points   of the columns, and others
 /// \param results  the point, and its derivatives
 template <int NUM_DERIVATIVES, typename REAL>
-void SumUpPatch(PatchWeights<NUM_DERIVATIVES, REAL> const &weights, REAL const *points, int size,
-                std::ptrdiff_t stride, REAL *const *results);
+void SumUpPatch(PatchWeights<NUM_DERIVATIVES, REAL> const &weights, PatchBlock<REAL> const &block,
+                REAL const *points, int size, std::ptrdiff_t stride, REAL *const *results);
 
 /// @name The same with some instructions, which the machine must have
 /// @{
 template <int NUM_DERIVATIVES, typename REAL>
-void SumUpPatchPortable(PatchWeights<NUM_DERIVATIVES, REAL> const &weights, REAL const *points,
-                        int size, std::ptrdiff_t stride, REAL *const *results);
+void SumUpPatchPortable(PatchWeights<NUM_DERIVATIVES, REAL> const &weights,
+                        PatchBlock<REAL> const &block, REAL const *points, int size,
+                        std::ptrdiff_t stride, REAL *const *results);
 template <int NUM_DERIVATIVES, typename REAL>
-void SumUpPatchAvx2(PatchWeights<NUM_DERIVATIVES, REAL> const &weights, REAL const *points,
-                    int size, std::ptrdiff_t stride, REAL *const *results);
+void SumUpPatchAvx2(PatchWeights<NUM_DERIVATIVES, REAL> const &weights,
+                    PatchBlock<REAL> const &block, REAL const *points, int size,
+                    std::ptrdiff_t stride, REAL *const *results);
 /// @}
 
 } // namespace OpenSubdivHex::BfrExt::internal

@@ -4,22 +4,23 @@
 namespace OpenSubdivHex::BfrExt::internal {
 
 template <int NUM_DERIVATIVES, typename REAL>
-void SumUpPatchPortable(PatchWeights<NUM_DERIVATIVES, REAL> const &weights, REAL const *points,
-                        int size, std::ptrdiff_t stride, REAL *const *results) {
-    sumUpPatch(weights, points, size, stride, results);
+void SumUpPatchPortable(PatchWeights<NUM_DERIVATIVES, REAL> const &weights,
+                        PatchBlock<REAL> const &block, REAL const *points, int size,
+                        std::ptrdiff_t stride, REAL *const *results) {
+    sumUpPatch(weights, block, points, size, stride, results);
 }
 
-template void SumUpPatchPortable(PatchWeights<0, float> const &, float const *, int, std::ptrdiff_t,
-                                 float *const *);
-template void SumUpPatchPortable(PatchWeights<0, double> const &, double const *, int,
-                                 std::ptrdiff_t, double *const *);
-template void SumUpPatchPortable(PatchWeights<1, float> const &, float const *, int, std::ptrdiff_t,
-                                 float *const *);
-template void SumUpPatchPortable(PatchWeights<1, double> const &, double const *, int,
-                                 std::ptrdiff_t, double *const *);
-template void SumUpPatchPortable(PatchWeights<2, float> const &, float const *, int, std::ptrdiff_t,
-                                 float *const *);
-template void SumUpPatchPortable(PatchWeights<2, double> const &, double const *, int,
-                                 std::ptrdiff_t, double *const *);
+template void SumUpPatchPortable(PatchWeights<0, float> const &, PatchBlock<float> const &,
+                                 float const *, int, std::ptrdiff_t, float *const *);
+template void SumUpPatchPortable(PatchWeights<0, double> const &, PatchBlock<double> const &,
+                                 double const *, int, std::ptrdiff_t, double *const *);
+template void SumUpPatchPortable(PatchWeights<1, float> const &, PatchBlock<float> const &,
+                                 float const *, int, std::ptrdiff_t, float *const *);
+template void SumUpPatchPortable(PatchWeights<1, double> const &, PatchBlock<double> const &,
+                                 double const *, int, std::ptrdiff_t, double *const *);
+template void SumUpPatchPortable(PatchWeights<2, float> const &, PatchBlock<float> const &,
+                                 float const *, int, std::ptrdiff_t, float *const *);
+template void SumUpPatchPortable(PatchWeights<2, double> const &, PatchBlock<double> const &,
+                                 double const *, int, std::ptrdiff_t, double *const *);
 
 } // namespace OpenSubdivHex::BfrExt::internal

@@ -6,7 +6,9 @@
 #include "patchSums.h"
 
 #include <algorithm>
+#include <array>
 #include <cstring>
+#include <iterator>
 #include <type_traits>
 
 #ifdef __FMA__
@@ -79,57 +81,249 @@ OPENSUBDIVHEX_INLINE Lanes<REAL> addProduct(Lanes<REAL> const &sum, Lanes<REAL> 
 }
 #endif
 
-// Some numbers of the points of a patch, summed up row by row, by t, as those of a bicubic patch: by De Casteljau's
-// algorithm to the four points whose bilinear interpolation is the point, and whose differences are its derivatives.
+// Columns of a block, which are computed with at once.
+#ifdef __FMA__
+template <typename REAL>
+struct ColumnsOf;
+template <>
+struct ColumnsOf<float> {
+    using Type = __m256;
+    OPENSUBDIVHEX_INLINE static Type Load(float const *from) { return _mm256_load_ps(from); }
+    OPENSUBDIVHEX_INLINE static void Store(Type values, float *to) { _mm256_store_ps(to, values); }
+    OPENSUBDIVHEX_INLINE static Type AddProduct(Type sum, Type values, float factor) {
+        return _mm256_fmadd_ps(values, _mm256_set1_ps(factor), sum);
+    }
+};
+template <>
+struct ColumnsOf<double> {
+    using Type = __m256d;
+    OPENSUBDIVHEX_INLINE static Type Load(double const *from) { return _mm256_load_pd(from); }
+    OPENSUBDIVHEX_INLINE static void Store(Type values, double *to) { _mm256_store_pd(to, values); }
+    OPENSUBDIVHEX_INLINE static Type AddProduct(Type sum, Type values, double factor) {
+        return _mm256_fmadd_pd(values, _mm256_set1_pd(factor), sum);
+    }
+};
+#else
+template <typename REAL>
+struct ColumnsOf {
+    struct Type {
+        REAL values[PatchBlock<REAL>::kPadding];
+    };
+    OPENSUBDIVHEX_INLINE static Type Load(REAL const *from) {
+        Type result;
+        std::copy_n(from, PatchBlock<REAL>::kPadding, result.values);
+        return result;
+    }
+    OPENSUBDIVHEX_INLINE static void Store(Type const &values, REAL *to) {
+        std::copy_n(values.values, PatchBlock<REAL>::kPadding, to);
+    }
+    OPENSUBDIVHEX_INLINE static Type AddProduct(Type const &sum, Type const &values, REAL factor) {
+        Type result;
+        for (int i = 0; i < PatchBlock<REAL>::kPadding; ++i) {
+            result.values[i] = sum.values[i] + values.values[i] * factor;
+        }
+        return result;
+    }
+};
+#endif
+
+// What the rows of a block weigh in each result.
+template <int NUM_DERIVATIVES, typename REAL>
+class RowWeights {
+public:
+    static constexpr int kNumResults = NUM_DERIVATIVES == 0 ? 1 : NUM_DERIVATIVES == 1 ? 3 : 6;
+
+    OPENSUBDIVHEX_INLINE explicit RowWeights(PatchWeights<NUM_DERIVATIVES, REAL> const &weights) {
+        Cubic const s(weights.s);
+        Cubic const t(weights.t);
+        setProducts(0, 0, s.values, t.values);
+        if constexpr (NUM_DERIVATIVES > 0) {
+            for (int i = 0; i < 2; ++i) {
+                auto const &by = weights.byUv[i];
+                setProducts(1 + i, 0, scale(s.first, by[0]), t.values);
+                setProducts(1 + i, 1, s.values, scale(t.first, by[1]));
+            }
+        }
+        if constexpr (NUM_DERIVATIVES > 1) {
+            for (int k = 0; k < 3; ++k) {
+                auto const &by = weights.byUvTwice[k];
+                Four ofS;
+                Four ofT;
+                for (std::size_t i = 0; i < 4; ++i) {
+                    ofS[i] = s.second[i] * by[2] + s.first[i] * by[0];
+                    ofT[i] = t.second[i] * by[4] + t.first[i] * by[1];
+                }
+                setProducts(3 + k, 0, ofS, t.values);
+                setProducts(3 + k, 1, s.values, ofT);
+                setProducts(3 + k, 1, scale(s.first, by[3]), t.first);
+            }
+        }
+        for (int i = 0; i < kNumResults; ++i) {
+            REAL const *const shares = weights.shares;
+            auto const &[low, high] = _inner[i];
+            REAL const products[4] = {low.values[1] * shares[0], low.values[2] * shares[1],
+                                      high.values[2] * shares[2], high.values[1] * shares[3]};
+            std::copy_n(products, 4, values[i] + PatchRow::kNumBicubic);
+        }
+    }
+
+    alignas(16) REAL values[kNumResults][kNumPatchPoints];
+
+private:
+    using Four = std::array<REAL, 4>;
+
+    // The cubic Bernstein polynomials, and their derivatives without factors of the degree.
+    struct Cubic {
+        OPENSUBDIVHEX_INLINE explicit Cubic(PatchCoordinate<REAL> const &at)
+            : values{at.quadratic[0] * at.toStart,
+                     at.quadratic[0] * at.toEnd + at.quadratic[1] * at.toStart,
+                     at.quadratic[1] * at.toEnd + at.quadratic[2] * at.toStart,
+                     at.quadratic[2] * at.toEnd},
+              first{-at.quadratic[0], at.quadratic[0] - at.quadratic[1],
+                    at.quadratic[1] - at.quadratic[2], at.quadratic[2]},
+              second{at.toStart, at.toEnd - 2 * at.toStart, at.toStart - 2 * at.toEnd, at.toEnd} {}
+
+        Four values;
+        Four first;
+        Four second;
+    };
+
+    OPENSUBDIVHEX_INLINE static Four scale(Four const &values, REAL factor) {
+        return {values[0] * factor, values[1] * factor, values[2] * factor, values[3] * factor};
+    }
+
+    // Sets the products to numbers, or adds them to what there is.
+    OPENSUBDIVHEX_INLINE void setProducts(int result, int isSum, Four const &byS, Four const &byT) {
+        auto const ofS = LanesOf<REAL>::Load(byS.data());
+        for (std::size_t row = 0; row < 4; ++row) {
+            REAL *const to = values[result] + 4 * row;
+            LanesOf<REAL> const products =
+                isSum != 0 ? addProduct(LanesOf<REAL>::Load(to), ofS, byT[row]) : ofS * byT[row];
+            std::memcpy(to, &products.values, sizeof(products.values));
+            if (row == 1 || row == 2) {
+                _inner[result][row - 1] = products;
+            }
+        }
+    }
+
+    // The two rows with points inside of corners, in registers: reading what was just written takes long.
+    LanesOf<REAL> _inner[kNumResults][2];
+};
+
+// The sums of some numbers of the points.
 //
 // IS_PACKED: points are three numbers each, without gaps; else numLanes of them are lanes.
 template <int NUM_DERIVATIVES, bool IS_PACKED, typename REAL>
 class PatchSums {
 public:
-    using Weights = PatchWeights<NUM_DERIVATIVES, REAL>;
+    using Rows = RowWeights<NUM_DERIVATIVES, REAL>;
+    static constexpr int kNumResults = Rows::kNumResults;
 
-    OPENSUBDIVHEX_INLINE PatchSums(Weights const &weights, REAL const *points,
-                                   std::ptrdiff_t stride, int numLanes)
-        : _weights(weights), _points(points), _stride(IS_PACKED ? 3 : stride),
-          _numLanes(IS_PACKED ? 3 : numLanes) {
-        addRow<0>(load(0), load(1), load(7), load(5));
-        addRow<1>(load(2), blend(0), blend(1), load(6));
-        addRow<2>(load(16), blend(3), blend(2), load(12));
-        addRow<3>(load(15), load(17), load(11), load(10));
+    OPENSUBDIVHEX_INLINE PatchSums(Rows const &rows, PatchBlock<REAL> const &block,
+                                   REAL const *points, std::ptrdiff_t stride, int numLanes)
+        : _rows(rows), _block(block), _points(points), _stride(IS_PACKED ? 3 : stride),
+          _numLanes(IS_PACKED ? 3 : numLanes), _paddedSize(_block.GetPaddedSize(block.numColumns)) {
+        setZero(_sums);
+        if (_block.weights) {
+            addTiles<kMaxTile>(0);
+        } else {
+            addPoints<false>(rows.values, kNumPatchPoints, 0);
+        }
     }
 
     OPENSUBDIVHEX_INLINE void Write(REAL *const *results, int firstResult) const {
-        auto const write = [&](int result, LanesOf<REAL> const &values) {
+        for (int i = 0; i < kNumResults; ++i) {
+            LanesOf<REAL> const sum = _sums[i][0] + _sums[i][1];
             REAL numbers[LanesOf<REAL>::kCount];
-            std::memcpy(numbers, &values.values, sizeof(numbers));
-            std::copy_n(numbers, IS_PACKED ? 3 : _numLanes, results[result] + firstResult);
-        };
-        auto const &s = _weights.s;
-        auto const &t = _weights.t;
-        write(0, mix(t, mix(s, _low[0], _low[1]), mix(s, _high[0], _high[1])));
-        if constexpr (NUM_DERIVATIVES > 0) {
-            LanesOf<REAL> const atLow = _low[1] - _low[0];
-            LanesOf<REAL> const atHigh = _high[1] - _high[0];
-            LanesOf<REAL> const ds = mix(t, atLow, atHigh);
-            LanesOf<REAL> const dt = mix(s, _high[0] - _low[0], _high[1] - _low[1]);
-            for (int i = 0; i < 2; ++i) {
-                write(1 + i, addProduct(ds * _weights.byUv[i][0], dt, _weights.byUv[i][1]));
-            }
-            if constexpr (NUM_DERIVATIVES > 1) {
-                LanesOf<REAL> const dst = atHigh - atLow;
-                for (int k = 0; k < 3; ++k) {
-                    auto const &by = _weights.byUvTwice[k];
-                    write(3 + k,
-                          _dss * by[2] + dst * by[3] + _dtt * by[4] + (ds * by[0] + dt * by[1]));
-                }
-            }
+            std::memcpy(numbers, &sum.values, sizeof(numbers));
+            std::copy_n(numbers, IS_PACKED ? 3 : _numLanes, results[i] + firstResult);
         }
     }
 
 private:
-    OPENSUBDIVHEX_INLINE LanesOf<REAL> load(int i) const {
-        REAL const *const from = _points + i * _stride;
-        if (IS_PACKED && i + 1 < kNumPatchPoints) {
+    using Columns = ColumnsOf<REAL>;
+    static constexpr int kWidth = PatchBlock<REAL>::kPadding;
+    // Registers of columns, so that the sums of all results are in registers.
+    static constexpr int kMaxTile = NUM_DERIVATIVES > 1 ? 2 : 4;
+
+    template <int TILE>
+    OPENSUBDIVHEX_INLINE void addTiles(int first) {
+        if constexpr (TILE > 0) {
+            for (; first + TILE * kWidth <= _paddedSize; first += TILE * kWidth) {
+                addTile<TILE>(first);
+            }
+            addTiles<TILE - 1>(first);
+        }
+    }
+
+    // Weighs some columns, and adds their points.
+    template <int TILE>
+    OPENSUBDIVHEX_INLINE void addTile(int first) {
+        typename Columns::Type weights[kNumResults][TILE];
+        setZero(weights);
+        REAL const *from = _block.weights + first;
+        for (int row = 0; row < kNumPatchPoints; ++row, from += _paddedSize) {
+            for (int i = 0; i < TILE; ++i) {
+                auto const columns = Columns::Load(from + i * kWidth);
+                for (int k = 0; k < kNumResults; ++k) {
+                    weights[k][i] =
+                        Columns::AddProduct(weights[k][i], columns, _rows.values[k][row]);
+                }
+            }
+        }
+        alignas(32) REAL numbers[kNumResults][TILE * kWidth];
+        for (int k = 0; k < kNumResults; ++k) {
+            for (int i = 0; i < TILE; ++i) {
+                Columns::Store(weights[k][i], numbers[k] + i * kWidth);
+            }
+        }
+        addPoints<true>(numbers, std::min(TILE * kWidth, _block.numColumns - first), first);
+    }
+
+    // Adds the points of some columns, whose weights are given by result.
+    template <bool HAS_COLUMNS, int SIZE>
+    OPENSUBDIVHEX_INLINE void addPoints(REAL const (&weights)[kNumResults][SIZE], int count,
+                                        int first) {
+        // In registers.
+        LanesOf<REAL> sums[kNumResults][2];
+        copySums(_sums, sums);
+        auto const add = [&](int i, int sum) {
+            int const column = first + i;
+            LanesOf<REAL> const point = load(HAS_COLUMNS ? _block.columns[column] : column, column);
+            for (int k = 0; k < kNumResults; ++k) {
+                sums[k][sum] = addProduct(sums[k][sum], point, weights[k][i]);
+            }
+        };
+        // Two sums do not wait for each other.
+        int i = 0;
+        for (; i + 1 < count; i += 2) {
+            add(i, 0);
+            add(i + 1, 1);
+        }
+        if (i < count) {
+            add(i, 0);
+        }
+        copySums(sums, _sums);
+    }
+
+    using Sums = LanesOf<REAL>[kNumResults][2];
+    OPENSUBDIVHEX_INLINE static void copySums(Sums const &from, Sums &to) {
+        for (int k = 0; k < kNumResults; ++k) {
+            to[k][0] = from[k][0];
+            to[k][1] = from[k][1];
+        }
+    }
+    // GCC would keep an array in memory that is set to 0 as a whole.
+    template <typename T, std::size_t SIZE>
+    OPENSUBDIVHEX_INLINE static void setZero(T (&arrays)[kNumResults][SIZE]) {
+        for (auto &array : arrays) {
+            std::fill(std::begin(array), std::end(array), T{});
+        }
+    }
+
+    OPENSUBDIVHEX_INLINE LanesOf<REAL> load(int point, int column) const {
+        REAL const *const from = _points + point * _stride;
+        if (IS_PACKED && column + 1 < _block.numColumns) {
             return LanesOf<REAL>::Load(from); // with a number of the next
         }
         REAL numbers[LanesOf<REAL>::kCount] = {};
@@ -137,71 +331,26 @@ private:
         return LanesOf<REAL>::Load(numbers);
     }
 
-    // The two points inside of a corner.
-    OPENSUBDIVHEX_INLINE LanesOf<REAL> blend(int corner) const {
-        LanesOf<REAL> const second = load(5 * corner + 4);
-        return addProduct(second, load(5 * corner + 3) - second, _weights.shares[corner]);
-    }
-
-    OPENSUBDIVHEX_INLINE static LanesOf<REAL>
-    mix(PatchCoordinate<REAL> const &at, LanesOf<REAL> const &start, LanesOf<REAL> const &end) {
-        return addProduct(start * at.toStart, end, at.toEnd);
-    }
-
-    OPENSUBDIVHEX_INLINE LanesOf<REAL> sumUp(LanesOf<REAL> const &a, LanesOf<REAL> const &b,
-                                             LanesOf<REAL> const &c) const {
-        auto const &quadratic = _weights.s.quadratic;
-        return addProduct(addProduct(a * quadratic[0], b, quadratic[1]), c, quadratic[2]);
-    }
-
-    template <int ROW>
-    OPENSUBDIVHEX_INLINE void addRow(LanesOf<REAL> const &a, LanesOf<REAL> const &b,
-                                     LanesOf<REAL> const &c, LanesOf<REAL> const &d) {
-        auto const &s = _weights.s;
-        auto const &t = _weights.t;
-        LanesOf<REAL> const ofRow[2] = {sumUp(a, b, c), sumUp(b, c, d)};
-        for (std::size_t i = 0; i < 2; ++i) {
-            if constexpr (ROW < 3) {
-                _low[i] = addProduct(_low[i], ofRow[i], t.quadratic[ROW]);
-            }
-            if constexpr (ROW > 0) {
-                _high[i] = addProduct(_high[i], ofRow[i], t.quadratic[ROW - 1]);
-            }
-        }
-        if constexpr (NUM_DERIVATIVES > 1) {
-            auto const getBend = [](auto const &x, auto const &y, auto const &z) {
-                return (z - y) - (y - x);
-            };
-            REAL const cubic = (ROW < 3 ? t.quadratic[ROW] * t.toStart : 0) +
-                               (ROW > 0 ? t.quadratic[ROW - 1] * t.toEnd : 0);
-            _dss = _dss + mix(s, getBend(a, b, c), getBend(b, c, d)) * cubic;
-            // The weights of the row in the second differences between rows.
-            constexpr REAL kBends[2][4] = {{1, -2, 1, 0}, {0, 1, -2, 1}};
-            _dtt = _dtt + mix(s, ofRow[0], ofRow[1]) *
-                              (kBends[0][ROW] * t.toStart + kBends[1][ROW] * t.toEnd);
-        }
-    }
-
-    Weights const &_weights;
+    Rows const &_rows;
+    PatchBlock<REAL> const &_block;
     REAL const *const _points;
     std::ptrdiff_t const _stride;
     int const _numLanes;
-    LanesOf<REAL> _low[2] = {};  // of the rows but the last: at the start and the end of s
-    LanesOf<REAL> _high[2] = {}; // but the first
-    LanesOf<REAL> _dss = {};
-    LanesOf<REAL> _dtt = {};
+    int const _paddedSize;
+    LanesOf<REAL> _sums[kNumResults][2]; // of even columns, and of odd ones
 };
 
 template <int NUM_DERIVATIVES, typename REAL>
-void sumUpPatch(PatchWeights<NUM_DERIVATIVES, REAL> const &weights, REAL const *points, int size,
-                std::ptrdiff_t stride, REAL *const *results) {
+void sumUpPatch(PatchWeights<NUM_DERIVATIVES, REAL> const &weights, PatchBlock<REAL> const &block,
+                REAL const *points, int size, std::ptrdiff_t stride, REAL *const *results) {
+    RowWeights<NUM_DERIVATIVES, REAL> const rows(weights);
     if (size == 3 && stride == 3) { // by far the most
-        PatchSums<NUM_DERIVATIVES, true, REAL>(weights, points, 3, 3).Write(results, 0);
+        PatchSums<NUM_DERIVATIVES, true, REAL>(rows, block, points, 3, 3).Write(results, 0);
         return;
     }
     constexpr int kLanes = int(LanesOf<REAL>::kCount);
     for (int lane = 0; lane < size; lane += kLanes) {
-        PatchSums<NUM_DERIVATIVES, false, REAL>(weights, points + lane, stride,
+        PatchSums<NUM_DERIVATIVES, false, REAL>(rows, block, points + lane, stride,
                                                 std::min(kLanes, size - lane))
             .Write(results, lane);
     }

@@ -32,7 +32,9 @@ enum class PatternOf {
     RingCell,
     RingItem,
     SecondDerivatives,
-    PatchPoints
+    PatchPoints,
+    ChildPatches,
+    PatchRows
 };
 
 /// \brief Values by key, of any type.

@@ -2,11 +2,14 @@
 //
 // Gregory patches by each kernel, against Bernstein polynomials in double precision.
 #include "bfr_ext/cell/patchSums.h"
+#include "bfr_ext/cell/placeKernel.h"
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
 #include <random>
 #include <vector>
 
@@ -14,8 +17,11 @@ namespace OpenSubdivHex::Regression::patchSumsTest {
 namespace {
 
 using BfrExt::internal::kNumPatchPoints;
+using BfrExt::internal::PatchBlock;
 using BfrExt::internal::PatchPlace;
+using BfrExt::internal::PatchRow;
 using BfrExt::internal::PatchWeights;
+using BfrExt::internal::RegisterAllocator;
 
 using Weights = std::array<double, 4>;
 
@@ -66,6 +72,66 @@ std::array<double, 6> evaluate(PatchPlace const &place, std::vector<double> cons
     return results;
 }
 
+/// A patch of some points; of no columns: of its own.
+template <typename REAL>
+class RandomBlock {
+public:
+    static constexpr std::size_t kNumPoints = 100;
+
+    RandomBlock(int numColumns, std::mt19937 &random) : _columns(kNumPoints) {
+        std::iota(_columns.begin(), _columns.end(), 0);
+        std::shuffle(_columns.begin(), _columns.end(), random);
+        _columns.resize(std::size_t(numColumns));
+        std::sort(_columns.begin(), _columns.end());
+        auto const paddedSize = std::size_t(PatchBlock<REAL>::GetPaddedSize(numColumns));
+        std::uniform_real_distribution<double> uniform(-1, 1);
+        _weights.resize(kNumPatchPoints * paddedSize);
+        for (std::size_t row = 0; row < kNumPatchPoints; ++row) {
+            for (std::size_t i = 0; i < _columns.size(); ++i) {
+                _weights[row * paddedSize + i] = REAL(uniform(random) / numColumns);
+            }
+        }
+    }
+
+    PatchBlock<REAL> Get() const {
+        return _columns.empty()
+                   ? PatchBlock<REAL>{nullptr, nullptr, kNumPatchPoints}
+                   : PatchBlock<REAL>{_weights.data(), _columns.data(), int(_columns.size())};
+    }
+    std::size_t GetNumPoints() const {
+        return _columns.empty() ? kNumPatchPoints : std::size_t(_columns.back()) + 1;
+    }
+
+    /// One number of the points of the patch.
+    std::vector<double> GetPatchPoints(std::vector<REAL> const &points, std::size_t stride,
+                                       std::size_t number) const {
+        std::size_t const paddedSize = _weights.size() / kNumPatchPoints;
+        std::vector<double> ofRows(kNumPatchPoints);
+        for (std::size_t row = 0; row < kNumPatchPoints; ++row) {
+            if (_columns.empty()) {
+                ofRows[row] = double(points[row * stride + number]);
+            }
+            for (std::size_t i = 0; i < _columns.size(); ++i) {
+                ofRows[row] += double(_weights[row * paddedSize + i]) *
+                               double(points[std::size_t(_columns[i]) * stride + number]);
+            }
+        }
+        std::vector<double> result(kNumPatchPoints);
+        for (std::size_t row = 0; row < kNumPatchPoints; ++row) {
+            result[std::size_t(PatchRow::kPoints[row])] = ofRows[row];
+        }
+        // The first point inside of each corner is given by what it has more than the second.
+        for (std::size_t corner = 0; corner < 4; ++corner) {
+            result[5 * corner + 3] += result[5 * corner + 4];
+        }
+        return result;
+    }
+
+private:
+    std::vector<int> _columns;
+    std::vector<REAL, RegisterAllocator<REAL>> _weights;
+};
+
 template <int NUM_DERIVATIVES, typename REAL, typename KERNEL>
 void expectSums(KERNEL const &kernel, double tolerance) {
     constexpr int kNumResults[] = {1, 3, 6};
@@ -73,44 +139,45 @@ void expectSums(KERNEL const &kernel, double tolerance) {
     std::mt19937 random{unsigned(NUM_DERIVATIVES)};
     std::uniform_real_distribution<double> uniform(-1, 1);
     std::uniform_real_distribution<double> inside(0.01, 0.99);
-    for (std::size_t const size : {1, 3, 4, 7}) {
-        for (std::size_t const stride : {size, size + 2}) {
-            SCOPED_TRACE(testing::Message() << size << " numbers, stride " << stride);
-            std::vector<REAL> points(stride * kNumPatchPoints);
-            for (REAL &number : points) {
-                number = REAL(uniform(random));
+    for (int const numColumns : {0, 1, 7, 8, 26, 32, 45, 100}) {
+        RandomBlock<REAL> const block(numColumns, random);
+        PatchPlace place = {};
+        place.s = inside(random);
+        place.t = inside(random);
+        for (auto *const pairs : {place.first, place.second}) {
+            for (int i = 0; i < (pairs == place.first ? 2 : 3); ++i) {
+                pairs[i] = {uniform(random), uniform(random)};
             }
-            PatchPlace place = {};
-            place.s = inside(random);
-            place.t = inside(random);
-            for (auto *const pairs : {place.first, place.second}) {
-                for (int i = 0; i < (pairs == place.first ? 2 : 3); ++i) {
-                    pairs[i] = {uniform(random), uniform(random)};
+        }
+        for (std::size_t const size : {1, 3, 4, 7}) {
+            for (std::size_t const stride : {size, size + 2}) {
+                SCOPED_TRACE(testing::Message() << numColumns << " columns, " << size
+                                                << " numbers, stride " << stride);
+                std::vector<REAL> points(stride * (block.GetNumPoints() - 1) + size);
+                for (REAL &number : points) {
+                    number = REAL(uniform(random));
                 }
-            }
-            std::vector<std::vector<REAL>> results(6, std::vector<REAL>(size + 1, kUntouched));
-            REAL *pointers[6];
-            for (std::size_t i = 0; i < 6; ++i) {
-                pointers[i] = results[i].data();
-            }
-            kernel(PatchWeights<NUM_DERIVATIVES, REAL>(place), points.data(), int(size),
-                   std::ptrdiff_t(stride), pointers);
-            for (std::size_t k = 0; k < size; ++k) {
-                std::vector<double> numbers;
-                for (std::size_t i = 0; i < kNumPatchPoints; ++i) {
-                    numbers.push_back(double(points[i * stride + k]));
-                }
-                std::array<double, 6> const expected = evaluate(place, numbers);
+                std::vector<std::vector<REAL>> results(6, std::vector<REAL>(size + 1, kUntouched));
+                REAL *pointers[6];
                 for (std::size_t i = 0; i < 6; ++i) {
-                    if (int(i) < kNumResults[NUM_DERIVATIVES]) {
-                        EXPECT_NEAR(double(results[i][k]), expected[i], tolerance) << i;
-                    } else {
-                        EXPECT_EQ(results[i][k], kUntouched);
+                    pointers[i] = results[i].data();
+                }
+                kernel(PatchWeights<NUM_DERIVATIVES, REAL>(place), block.Get(), points.data(),
+                       int(size), std::ptrdiff_t(stride), pointers);
+                for (std::size_t k = 0; k < size; ++k) {
+                    std::array<double, 6> const expected =
+                        evaluate(place, block.GetPatchPoints(points, stride, k));
+                    for (std::size_t i = 0; i < 6; ++i) {
+                        if (int(i) < kNumResults[NUM_DERIVATIVES]) {
+                            EXPECT_NEAR(double(results[i][k]), expected[i], tolerance) << i;
+                        } else {
+                            EXPECT_EQ(results[i][k], kUntouched);
+                        }
                     }
                 }
-            }
-            for (std::vector<REAL> const &result : results) {
-                EXPECT_EQ(result[size], kUntouched);
+                for (std::vector<REAL> const &result : results) {
+                    EXPECT_EQ(result[size], kUntouched);
+                }
             }
         }
     }

@@ -350,14 +350,15 @@ TEST(SurfacePlaces, NearSharpFeaturesHaveALevelOfTheirOwn) {
                               findErrors(shape, ReferenceMask::Smooth, getLevels(5), 4)};
     EXPECT_LT(errors[1].largest, 0.5 * errors[0].largest);
     auto const refiner = CreateRefiner(shape, ReferenceMask::Smooth, 0, getOptions());
-    auto const factory = SurfaceFactory::Create(*refiner, getLevels(5));
+    auto const coarse = SurfaceFactory::Create(*refiner, getLevels(2));
+    auto const factory = coarse->CreateWith(getLevels(5));
     int numSharp = 0;
     for (int face = 0; face < shape.GetNumFaces(); ++face) {
-        Surface<float> surface;
-        ASSERT_TRUE(factory->InitVertexSurface(face, &surface));
-        int const numPoints = surface.GetNumPatchPoints() - surface.GetNumControlPoints();
-        bool const isSharp = numPoints == 20 * BfrExt::internal::GetNumFacePatches(4, 5);
-        ASSERT_TRUE(isSharp || numPoints == 20 * BfrExt::internal::GetNumFacePatches(4, 2));
+        PlacedSurface surfaces[2];
+        ASSERT_TRUE(surfaces[0].Init(*coarse, shape.positions, face));
+        ASSERT_TRUE(surfaces[1].Init(*factory, shape.positions, face));
+        Uv const uv = {0.21, 0.33};
+        bool const isSharp = surfaces[0].Evaluate(uv)[0] != surfaces[1].Evaluate(uv)[0];
         numSharp += isSharp ? 1 : 0;
         // Faces with a sharp edge, and those around their neighbours.
         Far::ConstIndexArray const verts = refiner->GetLevel(0).GetFaceVertices(face);
@@ -507,7 +508,7 @@ TEST(SurfacePlaces, OfManyFacesAreThoseOfEach) {
 
 // Points of the patches that have places, and of no others, with the same bits.
 TEST(SurfacePlaces, HavePatchPointsOfTheirOwn) {
-    auto const quads = MakeTorus(6, 5, TorusFaces::Quads);
+    auto const quads = MakeTorus(12, 8, TorusFaces::Quads);
     auto const triangles = MakeTorus(6, 5, TorusFaces::IrregularTriangles);
     for (Shape const *const shape : {&quads, &triangles, &GetFeatureShape("dartsTriangles")}) {
         auto const refiner = CreateRefiner(*shape, ReferenceMask::Smooth, 0, getOptions());
@@ -540,6 +541,8 @@ TEST(SurfacePlaces, HavePatchPointsOfTheirOwn) {
                     }
                     constexpr std::size_t kOfPatch = 20;
                     EXPECT_LE(numComputed, 3 * (numControl + kOfPatch * std::size_t(numPlaces)));
+                    // Patches of quads in a lattice are sums of the control points.
+                    EXPECT_EQ(shape == &quads, numPoints == numControl);
                     for (int i = 0; i < numPlaces; ++i) {
                         float p[2][3];
                         surface.Evaluate(&uvs[2 * std::size_t(i)], some.data(), 3, p[0]);
