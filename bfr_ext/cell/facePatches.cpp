@@ -82,19 +82,6 @@ std::vector<std::vector<double>> findRows(CellType const &type, int steps, Corne
     return rows;
 }
 
-// A row of the block of a patch whose points have these rows.
-std::vector<double> makePatchRow(std::vector<double> const *points, int row) {
-    std::vector<double> result = points[PatchRow::kPoints[row]];
-    if (row >= PatchRow::kNumBicubic) {
-        int const corner = row - PatchRow::kNumBicubic;
-        std::vector<double> const &second = points[PatchRow::kPoints[PatchRow::kOfCorners[corner]]];
-        for (std::size_t i = 0; i < result.size(); ++i) {
-            result[i] -= second[i];
-        }
-    }
-    return result;
-}
-
 // Whether some rows weigh a column by more than rounding; weights that are not numbers do.
 bool isUsed(std::vector<double> const *rows, std::size_t numRows, std::size_t column) {
     constexpr double kRounding = 1e-15;
@@ -116,10 +103,8 @@ struct PointMatrix {
         matrix = PlaceMatrix<REAL>(rows.size(), columns.size());
         std::vector<double> used(columns.size());
         for (std::size_t i = 0; i < rows.size(); ++i) {
-            std::vector<double> const row = makePatchRow(
-                &rows[i / kNumPatchPoints * kNumPatchPoints], int(i % kNumPatchPoints));
             std::transform(columns.begin(), columns.end(), used.begin(),
-                           [&](int column) { return row[std::size_t(column)]; });
+                           [&](int column) { return rows[i][std::size_t(column)]; });
             matrix.Set(i, used);
         }
     }
@@ -794,9 +779,14 @@ void PatchRows<REAL>::add(std::vector<double> const *points) {
     _weights.resize(patch.firstWeight + kNumPatchPoints * paddedSize);
     REAL *to = _weights.data() + patch.firstWeight;
     for (int row = 0; row < kNumPatchPoints; ++row, to += paddedSize) {
-        std::vector<double> const weights = makePatchRow(points, row);
         for (std::size_t i = 0; i < std::size_t(patch.numColumns); ++i) {
-            to[i] = REAL(weights[std::size_t(_columns[patch.firstColumn + i])]);
+            auto const column = std::size_t(_columns[patch.firstColumn + i]);
+            double weight = points[PatchRow::kPoints[row]][column];
+            if (row >= PatchRow::kNumBicubic) {
+                int const second = PatchRow::kOfCorners[row - PatchRow::kNumBicubic];
+                weight -= points[PatchRow::kPoints[second]][column];
+            }
+            to[i] = REAL(weight);
         }
     }
 }
@@ -819,7 +809,7 @@ void EvaluatePlace(Bfr::Parameterization const &parameterization, FaceShape shap
             }
         });
     SumUpPatch(PatchWeights<NUM_DERIVATIVES, REAL>(place),
-               hasRows ? rows[place.patch] : PatchBlock<REAL>{nullptr, nullptr, kNumPatchPoints},
+               hasRows ? rows[place.patch] : PatchBlock<REAL>{nullptr, nullptr, 0},
                getPoints(place.patch), size, stride, results);
 }
 

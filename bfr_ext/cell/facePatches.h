@@ -67,8 +67,7 @@ private:
 ///
 /// \param control  points of the type, of \p size numbers each, from one to the next by \p stride
 /// \param wanted   the patches, ascending; null: all
-/// \param points   kNumPatchPoints for each patch of the face, by the rows of a PatchBlock; those of other patches are left
-///                 as they are
+/// \param points   kNumPatchPoints for each patch of the face; those of other patches are left as they are
 template <typename REAL>
 void MakeFacePatchPoints(BaseType const &type, int level, REAL const *control, int size,
                          std::ptrdiff_t stride, std::vector<int> const *wanted, REAL *points);

@@ -23,10 +23,10 @@ struct PatchPlace {
     Pair second[3]; ///< of (s, t), by u twice, by u and v, by v twice
 };
 
-/// \brief The order in which the points of a Gregory patch are evaluated.
+/// \brief The rows by which the points of a Gregory patch are sums of other points.
 ///
-/// The first 16 rows are the points of the bicubic patch, row by row by t, each with the second of the two points inside of a
-/// corner.  The last four are what the first point inside of each corner, in turn, has more than the second.
+/// The first 16 make the points of the bicubic patch, row by row by t, each with the second of the two points inside of a
+/// corner.  The last four make what the first point inside of each corner, in turn, has more than the second.
 struct PatchRow {
     static constexpr int kNumBicubic = 16;
     /// By row, the point of the patch; of the last four the first point inside of a corner.
@@ -36,16 +36,16 @@ struct PatchRow {
     static constexpr int kOfCorners[4] = {5, 6, 10, 9};
 };
 
-/// \brief The rows of a patch as sums of some points, the columns of a dense matrix.
+/// \brief A Gregory patch as sums of points, the columns of a dense matrix.
 template <typename REAL>
 struct PatchBlock {
-    /// Columns are padded with zeros to a multiple of it.
+    /// Rows are padded with zeros to a multiple of it.
     static constexpr int kPadding = 32 / int(sizeof(REAL));
     static int GetPaddedSize(int numColumns) {
         return (numColumns + kPadding - 1) / kPadding * kPadding;
     }
 
-    REAL const *weights; ///< row by row; null: the rows are the points
+    REAL const *weights; ///< row by row; null: the points are those of the patch
     int const *columns;  ///< the points, ascending; null, too
     int numColumns;
 };
@@ -106,9 +106,10 @@ struct PatchWeights {
 
 /// \brief Writes the point of a patch, and its derivatives, in the order of EvaluatePlace(), by what the machine has.
 ///
-/// Each column is weighed first: the same bits for any size and stride of points, and with any derivatives beside.
+/// Points of the patch are evaluated by De Casteljau's algorithm.  Of a block the rows are weighed, and so the columns, whose
+/// points are summed up.  The same bits for any size and stride of points.
 ///
-/// \param points   of the columns, and others
+/// \param points   of the patch, or those that columns name
 /// \param results  the point, and its derivatives
 template <int NUM_DERIVATIVES, typename REAL>
 void SumUpPatch(PatchWeights<NUM_DERIVATIVES, REAL> const &weights, PatchBlock<REAL> const &block,

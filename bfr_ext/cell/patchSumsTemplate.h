@@ -81,6 +81,119 @@ OPENSUBDIVHEX_INLINE Lanes<REAL> addProduct(Lanes<REAL> const &sum, Lanes<REAL> 
 }
 #endif
 
+// Some numbers of the points of a patch, summed up row by row, by t, as those of a bicubic patch: by De Casteljau's
+// algorithm to the four points whose bilinear interpolation is the point, and whose differences are its derivatives.
+//
+// IS_PACKED: points are three numbers each, without gaps; else numLanes of them are lanes.
+template <int NUM_DERIVATIVES, bool IS_PACKED, typename REAL>
+class PatchSums {
+public:
+    using Weights = PatchWeights<NUM_DERIVATIVES, REAL>;
+
+    OPENSUBDIVHEX_INLINE PatchSums(Weights const &weights, REAL const *points,
+                                   std::ptrdiff_t stride, int numLanes)
+        : _weights(weights), _points(points), _stride(IS_PACKED ? 3 : stride),
+          _numLanes(IS_PACKED ? 3 : numLanes) {
+        addRow<0>(load(0), load(1), load(7), load(5));
+        addRow<1>(load(2), blend(0), blend(1), load(6));
+        addRow<2>(load(16), blend(3), blend(2), load(12));
+        addRow<3>(load(15), load(17), load(11), load(10));
+    }
+
+    OPENSUBDIVHEX_INLINE void Write(REAL *const *results, int firstResult) const {
+        auto const write = [&](int result, LanesOf<REAL> const &values) {
+            REAL numbers[LanesOf<REAL>::kCount];
+            std::memcpy(numbers, &values.values, sizeof(numbers));
+            std::copy_n(numbers, IS_PACKED ? 3 : _numLanes, results[result] + firstResult);
+        };
+        auto const &s = _weights.s;
+        auto const &t = _weights.t;
+        write(0, mix(t, mix(s, _low[0], _low[1]), mix(s, _high[0], _high[1])));
+        if constexpr (NUM_DERIVATIVES > 0) {
+            LanesOf<REAL> const atLow = _low[1] - _low[0];
+            LanesOf<REAL> const atHigh = _high[1] - _high[0];
+            LanesOf<REAL> const ds = mix(t, atLow, atHigh);
+            LanesOf<REAL> const dt = mix(s, _high[0] - _low[0], _high[1] - _low[1]);
+            for (int i = 0; i < 2; ++i) {
+                write(1 + i, addProduct(ds * _weights.byUv[i][0], dt, _weights.byUv[i][1]));
+            }
+            if constexpr (NUM_DERIVATIVES > 1) {
+                LanesOf<REAL> const dst = atHigh - atLow;
+                for (int k = 0; k < 3; ++k) {
+                    auto const &by = _weights.byUvTwice[k];
+                    write(3 + k,
+                          _dss * by[2] + dst * by[3] + _dtt * by[4] + (ds * by[0] + dt * by[1]));
+                }
+            }
+        }
+    }
+
+private:
+    OPENSUBDIVHEX_INLINE LanesOf<REAL> load(int i) const {
+        REAL const *const from = _points + i * _stride;
+        if (IS_PACKED && i + 1 < kNumPatchPoints) {
+            return LanesOf<REAL>::Load(from); // with a number of the next
+        }
+        REAL numbers[LanesOf<REAL>::kCount] = {};
+        std::copy_n(from, _numLanes, numbers);
+        return LanesOf<REAL>::Load(numbers);
+    }
+
+    // The two points inside of a corner.
+    OPENSUBDIVHEX_INLINE LanesOf<REAL> blend(int corner) const {
+        LanesOf<REAL> const second = load(5 * corner + 4);
+        return addProduct(second, load(5 * corner + 3) - second, _weights.shares[corner]);
+    }
+
+    OPENSUBDIVHEX_INLINE static LanesOf<REAL>
+    mix(PatchCoordinate<REAL> const &at, LanesOf<REAL> const &start, LanesOf<REAL> const &end) {
+        return addProduct(start * at.toStart, end, at.toEnd);
+    }
+
+    OPENSUBDIVHEX_INLINE LanesOf<REAL> sumUp(LanesOf<REAL> const &a, LanesOf<REAL> const &b,
+                                             LanesOf<REAL> const &c) const {
+        auto const &quadratic = _weights.s.quadratic;
+        return addProduct(addProduct(a * quadratic[0], b, quadratic[1]), c, quadratic[2]);
+    }
+
+    template <int ROW>
+    OPENSUBDIVHEX_INLINE void addRow(LanesOf<REAL> const &a, LanesOf<REAL> const &b,
+                                     LanesOf<REAL> const &c, LanesOf<REAL> const &d) {
+        auto const &s = _weights.s;
+        auto const &t = _weights.t;
+        LanesOf<REAL> const ofRow[2] = {sumUp(a, b, c), sumUp(b, c, d)};
+        for (std::size_t i = 0; i < 2; ++i) {
+            if constexpr (ROW < 3) {
+                _low[i] = addProduct(_low[i], ofRow[i], t.quadratic[ROW]);
+            }
+            if constexpr (ROW > 0) {
+                _high[i] = addProduct(_high[i], ofRow[i], t.quadratic[ROW - 1]);
+            }
+        }
+        if constexpr (NUM_DERIVATIVES > 1) {
+            auto const getBend = [](auto const &x, auto const &y, auto const &z) {
+                return (z - y) - (y - x);
+            };
+            REAL const cubic = (ROW < 3 ? t.quadratic[ROW] * t.toStart : 0) +
+                               (ROW > 0 ? t.quadratic[ROW - 1] * t.toEnd : 0);
+            _dss = _dss + mix(s, getBend(a, b, c), getBend(b, c, d)) * cubic;
+            // The weights of the row in the second differences between rows.
+            constexpr REAL kBends[2][4] = {{1, -2, 1, 0}, {0, 1, -2, 1}};
+            _dtt = _dtt + mix(s, ofRow[0], ofRow[1]) *
+                              (kBends[0][ROW] * t.toStart + kBends[1][ROW] * t.toEnd);
+        }
+    }
+
+    Weights const &_weights;
+    REAL const *const _points;
+    std::ptrdiff_t const _stride;
+    int const _numLanes;
+    LanesOf<REAL> _low[2] = {};  // of the rows but the last: at the start and the end of s
+    LanesOf<REAL> _high[2] = {}; // but the first
+    LanesOf<REAL> _dss = {};
+    LanesOf<REAL> _dtt = {};
+};
+
 // Columns of a block, which are computed with at once.
 #ifdef __FMA__
 template <typename REAL>
@@ -210,25 +323,21 @@ private:
     LanesOf<REAL> _inner[kNumResults][2];
 };
 
-// The sums of some numbers of the points.
+// Some numbers of sums of points: the rows of a block are weighed, and so the points of its columns.
 //
 // IS_PACKED: points are three numbers each, without gaps; else numLanes of them are lanes.
 template <int NUM_DERIVATIVES, bool IS_PACKED, typename REAL>
-class PatchSums {
+class BlockSums {
 public:
     using Rows = RowWeights<NUM_DERIVATIVES, REAL>;
     static constexpr int kNumResults = Rows::kNumResults;
 
-    OPENSUBDIVHEX_INLINE PatchSums(Rows const &rows, PatchBlock<REAL> const &block,
+    OPENSUBDIVHEX_INLINE BlockSums(Rows const &rows, PatchBlock<REAL> const &block,
                                    REAL const *points, std::ptrdiff_t stride, int numLanes)
         : _rows(rows), _block(block), _points(points), _stride(IS_PACKED ? 3 : stride),
           _numLanes(IS_PACKED ? 3 : numLanes), _paddedSize(_block.GetPaddedSize(block.numColumns)) {
         setZero(_sums);
-        if (_block.weights) {
-            addTiles<kMaxTile>(0);
-        } else {
-            addPoints<false>(rows.values, kNumPatchPoints, 0);
-        }
+        addTiles<kMaxTile>(0);
     }
 
     OPENSUBDIVHEX_INLINE void Write(REAL *const *results, int firstResult) const {
@@ -277,11 +386,11 @@ private:
                 Columns::Store(weights[k][i], numbers[k] + i * kWidth);
             }
         }
-        addPoints<true>(numbers, std::min(TILE * kWidth, _block.numColumns - first), first);
+        addPoints(numbers, std::min(TILE * kWidth, _block.numColumns - first), first);
     }
 
     // Adds the points of some columns, whose weights are given by result.
-    template <bool HAS_COLUMNS, int SIZE>
+    template <int SIZE>
     OPENSUBDIVHEX_INLINE void addPoints(REAL const (&weights)[kNumResults][SIZE], int count,
                                         int first) {
         // In registers.
@@ -289,7 +398,7 @@ private:
         copySums(_sums, sums);
         auto const add = [&](int i, int sum) {
             int const column = first + i;
-            LanesOf<REAL> const point = load(HAS_COLUMNS ? _block.columns[column] : column, column);
+            LanesOf<REAL> const point = load(_block.columns[column], column);
             for (int k = 0; k < kNumResults; ++k) {
                 sums[k][sum] = addProduct(sums[k][sum], point, weights[k][i]);
             }
@@ -340,20 +449,36 @@ private:
     LanesOf<REAL> _sums[kNumResults][2]; // of even columns, and of odd ones
 };
 
-template <int NUM_DERIVATIVES, typename REAL>
-void sumUpPatch(PatchWeights<NUM_DERIVATIVES, REAL> const &weights, PatchBlock<REAL> const &block,
-                REAL const *points, int size, std::ptrdiff_t stride, REAL *const *results) {
-    RowWeights<NUM_DERIVATIVES, REAL> const rows(weights);
+// Calls function(is packed, first, number) for lanes of points.
+template <typename REAL, typename FUNCTION>
+OPENSUBDIVHEX_INLINE void forLanes(int size, std::ptrdiff_t stride, FUNCTION const &function) {
     if (size == 3 && stride == 3) { // by far the most
-        PatchSums<NUM_DERIVATIVES, true, REAL>(rows, block, points, 3, 3).Write(results, 0);
+        function(std::true_type(), 0, 3);
         return;
     }
     constexpr int kLanes = int(LanesOf<REAL>::kCount);
     for (int lane = 0; lane < size; lane += kLanes) {
-        PatchSums<NUM_DERIVATIVES, false, REAL>(rows, block, points + lane, stride,
-                                                std::min(kLanes, size - lane))
-            .Write(results, lane);
+        function(std::false_type(), lane, std::min(kLanes, size - lane));
     }
+}
+
+template <int NUM_DERIVATIVES, typename REAL>
+void sumUpPatch(PatchWeights<NUM_DERIVATIVES, REAL> const &weights, REAL const *points, int size,
+                std::ptrdiff_t stride, REAL *const *results) {
+    forLanes<REAL>(size, stride, [&](auto isPacked, int lane, int numLanes) {
+        PatchSums<NUM_DERIVATIVES, isPacked(), REAL>(weights, points + lane, stride, numLanes)
+            .Write(results, lane);
+    });
+}
+
+template <int NUM_DERIVATIVES, typename REAL>
+void sumUpBlock(PatchWeights<NUM_DERIVATIVES, REAL> const &weights, PatchBlock<REAL> const &block,
+                REAL const *points, int size, std::ptrdiff_t stride, REAL *const *results) {
+    RowWeights<NUM_DERIVATIVES, REAL> const rows(weights);
+    forLanes<REAL>(size, stride, [&](auto isPacked, int lane, int numLanes) {
+        BlockSums<NUM_DERIVATIVES, isPacked(), REAL>(rows, block, points + lane, stride, numLanes)
+            .Write(results, lane);
+    });
 }
 
 } // namespace

@@ -95,7 +95,7 @@ public:
 
     PatchBlock<REAL> Get() const {
         return _columns.empty()
-                   ? PatchBlock<REAL>{nullptr, nullptr, kNumPatchPoints}
+                   ? PatchBlock<REAL>{nullptr, nullptr, 0}
                    : PatchBlock<REAL>{_weights.data(), _columns.data(), int(_columns.size())};
     }
     std::size_t GetNumPoints() const {
@@ -106,19 +106,19 @@ public:
     std::vector<double> GetPatchPoints(std::vector<REAL> const &points, std::size_t stride,
                                        std::size_t number) const {
         std::size_t const paddedSize = _weights.size() / kNumPatchPoints;
-        std::vector<double> ofRows(kNumPatchPoints);
-        for (std::size_t row = 0; row < kNumPatchPoints; ++row) {
-            if (_columns.empty()) {
-                ofRows[row] = double(points[row * stride + number]);
-            }
-            for (std::size_t i = 0; i < _columns.size(); ++i) {
-                ofRows[row] += double(_weights[row * paddedSize + i]) *
-                               double(points[std::size_t(_columns[i]) * stride + number]);
-            }
-        }
         std::vector<double> result(kNumPatchPoints);
+        if (_columns.empty()) {
+            for (std::size_t i = 0; i < kNumPatchPoints; ++i) {
+                result[i] = double(points[i * stride + number]);
+            }
+            return result;
+        }
         for (std::size_t row = 0; row < kNumPatchPoints; ++row) {
-            result[std::size_t(PatchRow::kPoints[row])] = ofRows[row];
+            for (std::size_t i = 0; i < _columns.size(); ++i) {
+                result[std::size_t(PatchRow::kPoints[row])] +=
+                    double(_weights[row * paddedSize + i]) *
+                    double(points[std::size_t(_columns[i]) * stride + number]);
+            }
         }
         // The first point inside of each corner is given by what it has more than the second.
         for (std::size_t corner = 0; corner < 4; ++corner) {
