@@ -106,8 +106,10 @@ public:
         if (!slots) {
             return nullptr;
         }
-        Face const *found = nullptr;
-        if (slots[face].compare_exchange_strong(found, &_metOnce, std::memory_order_acquire)) {
+        Face const *found = slots[face].load(std::memory_order_acquire);
+        if (!found) {
+            // An exchange would take longer.  If another thread keeps the face meanwhile, it is kept once more later.
+            slots[face].store(&_metOnce, std::memory_order_relaxed);
             return nullptr;
         }
         if (found != &_metOnce) {

@@ -58,29 +58,52 @@ public:
         std::size_t const hash = getHash(kind, begin, end);
         auto const isSame = [&](Entry const &entry) {
             return entry.kind == kind &&
-                   std::equal(begin, end, entry.rest.begin(), entry.rest.end());
+                   std::equal(begin, end, entry.GetRest(), entry.GetRest() + entry.size);
         };
         Entry const *entry = _entries.Find(hash, isSame);
         if (!entry) {
-            auto pattern = std::make_shared<PATTERN const>(make());
-            std::size_t const size = sizeof(PATTERN) + GetHeapSize(*pattern);
-            auto const [added, isNew] = _entries.Add(
-                std::make_unique<Entry const>(Entry{kind, {begin, end}, hash, std::move(pattern)}),
-                isSame);
+            auto made = std::make_unique<EntryOf<PATTERN> const>(hash, kind, begin, end, make);
+            std::size_t const size = sizeof(PATTERN) + GetHeapSize(made->pattern);
+            auto const [added, isNew] = _entries.Add(std::move(made), isSame);
             if (isNew) {
-                _memory.Add(decltype(_entries)::kEntrySize + GetHeapSize(added->rest) + size);
+                _memory.Add(decltype(_entries)::kEntrySize + GetHeapSize(added->longRest) + size);
             }
             entry = added;
         }
-        return *static_cast<PATTERN const *>(entry->pattern.get());
+        return static_cast<EntryOf<PATTERN> const *>(entry)->pattern;
     }
 
 private:
     struct Entry {
-        int kind;
-        std::vector<int> rest;
-        std::size_t hash;
-        std::shared_ptr<void const> pattern;
+        Entry(std::size_t hashOfKey, int kindOfKey, int const *begin, int const *end)
+            : hash(hashOfKey), kind(kindOfKey), size(int(end - begin)) {
+            if (size <= kShortSize) {
+                std::copy(begin, end, shortRest);
+            } else {
+                longRest.assign(begin, end);
+            }
+        }
+        virtual ~Entry() = default;
+
+        int const *GetRest() const { return size <= kShortSize ? shortRest : longRest.data(); }
+
+        static constexpr int kShortSize = 6;
+
+        std::size_t const hash;
+        int const kind;
+        int const size; // of the rest of the key
+        int shortRest[kShortSize] = {};
+        std::vector<int> longRest; // where it is longer
+    };
+    // Beside its key, so that a look-up reads few lines of the cache.
+    template <typename PATTERN>
+    struct EntryOf final : Entry {
+        template <typename MAKE>
+        EntryOf(std::size_t hashOfKey, int kindOfKey, int const *begin, int const *end,
+                MAKE const &make)
+            : Entry(hashOfKey, kindOfKey, begin, end), pattern(make()) {}
+
+        PATTERN const pattern;
     };
 
     static std::size_t getHash(int kind, int const *begin, int const *end) {
