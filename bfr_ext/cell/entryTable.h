@@ -6,8 +6,6 @@
 #include <cstddef>
 #include <memory>
 #include <mutex>
-#include <new>
-#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -50,7 +48,7 @@ public:
         if (_allSlots.empty() || 2 * _entries.size() > _allSlots.back()->mask + 1) {
             std::size_t const size =
                 _allSlots.empty() ? kLeastSize : 2 * (_allSlots.back()->mask + 1);
-            SlotsPointer slots = makeSlots(size);
+            auto slots = std::make_unique<Slots>(size);
             for (auto const &other : _entries) {
                 insert(*slots, *other);
             }
@@ -64,31 +62,14 @@ public:
     }
 
 private:
-    using Slot = std::atomic<ENTRY const *>;
     // Entries by their hashes, from where these say on, without gaps.
     struct Slots {
-        explicit Slots(std::size_t size) : mask(size - 1) {
-            for (std::size_t i = 0; i < size; ++i) {
-                new (GetEntries() + i) Slot(nullptr);
-            }
-        }
-
-        Slot *GetEntries() { return reinterpret_cast<Slot *>(this + 1); }
-        Slot const *GetEntries() const { return reinterpret_cast<Slot const *>(this + 1); }
+        explicit Slots(std::size_t size)
+            : mask(size - 1), entries(new std::atomic<ENTRY const *>[size]()) {}
 
         std::size_t const mask; // the size, a power of two, less one
+        std::unique_ptr<std::atomic<ENTRY const *>[]> const entries;
     };
-    static_assert(std::is_trivially_destructible_v<Slot> &&
-                  sizeof(std::size_t) % alignof(Slot) == 0);
-    struct DeleteSlots {
-        void operator()(Slots *slots) const { ::operator delete(slots); }
-    };
-    using SlotsPointer = std::unique_ptr<Slots, DeleteSlots>;
-    // In one block of memory with the entries.
-    static SlotsPointer makeSlots(std::size_t size) {
-        void *const memory = ::operator new(sizeof(Slots) + size * sizeof(Slot));
-        return SlotsPointer(new (memory) Slots(size));
-    }
     static constexpr std::size_t kLeastSize = 4;
 
     template <typename SAME>
@@ -98,7 +79,7 @@ private:
         }
         for (std::size_t i = hash;; ++i) {
             ENTRY const *const entry =
-                slots->GetEntries()[i & slots->mask].load(std::memory_order_acquire);
+                slots->entries[i & slots->mask].load(std::memory_order_acquire);
             if (!entry || (entry->hash == hash && isSame(*entry))) {
                 return entry;
             }
@@ -107,15 +88,15 @@ private:
 
     static void insert(Slots &slots, ENTRY const &entry) {
         std::size_t i = entry.hash;
-        while (slots.GetEntries()[i & slots.mask].load(std::memory_order_relaxed)) {
+        while (slots.entries[i & slots.mask].load(std::memory_order_relaxed)) {
             ++i;
         }
-        slots.GetEntries()[i & slots.mask].store(&entry, std::memory_order_release);
+        slots.entries[i & slots.mask].store(&entry, std::memory_order_release);
     }
 
     std::atomic<Slots const *> _slots{nullptr};
     std::mutex _mutex;
-    std::vector<SlotsPointer> _allSlots;
+    std::vector<std::unique_ptr<Slots>> _allSlots;
     std::vector<Pointer> _entries;
 };
 

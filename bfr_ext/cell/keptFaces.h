@@ -106,10 +106,8 @@ public:
         if (!slots) {
             return nullptr;
         }
-        Face const *found = slots[face].load(std::memory_order_acquire);
-        if (!found) {
-            // An exchange would take longer.  If another thread keeps the face meanwhile, it is kept once more later.
-            slots[face].store(&_metOnce, std::memory_order_relaxed);
+        Face const *found = nullptr;
+        if (slots[face].compare_exchange_strong(found, &_metOnce, std::memory_order_acquire)) {
             return nullptr;
         }
         if (found != &_metOnce) {

@@ -58,7 +58,7 @@ public:
         std::size_t const hash = getHash(kind, begin, end);
         auto const isSame = [&](Entry const &entry) {
             return entry.kind == kind &&
-                   std::equal(begin, end, entry.GetRest(), entry.GetRest() + entry.size);
+                   std::equal(begin, end, entry.rest.begin(), entry.rest.end());
         };
         Entry const *entry = _entries.Find(hash, isSame);
         if (!entry) {
@@ -66,7 +66,7 @@ public:
             std::size_t const size = sizeof(PATTERN) + GetHeapSize(made->pattern);
             auto const [added, isNew] = _entries.Add(std::move(made), isSame);
             if (isNew) {
-                _memory.Add(decltype(_entries)::kEntrySize + GetHeapSize(added->longRest) + size);
+                _memory.Add(decltype(_entries)::kEntrySize + GetHeapSize(added->rest) + size);
             }
             entry = added;
         }
@@ -76,24 +76,12 @@ public:
 private:
     struct Entry {
         Entry(std::size_t hashOfKey, int kindOfKey, int const *begin, int const *end)
-            : hash(hashOfKey), kind(kindOfKey), size(int(end - begin)) {
-            if (size <= kShortSize) {
-                std::copy(begin, end, shortRest);
-            } else {
-                longRest.assign(begin, end);
-            }
-        }
+            : hash(hashOfKey), kind(kindOfKey), rest(begin, end) {}
         virtual ~Entry() = default;
-
-        int const *GetRest() const { return size <= kShortSize ? shortRest : longRest.data(); }
-
-        static constexpr int kShortSize = 6;
 
         std::size_t const hash;
         int const kind;
-        int const size; // of the rest of the key
-        int shortRest[kShortSize] = {};
-        std::vector<int> longRest; // where it is longer
+        std::vector<int> const rest;
     };
     // Beside its key, so that a look-up reads few lines of the cache.
     template <typename PATTERN>

@@ -82,8 +82,6 @@ public:
         FaceRings const *const rings = _rings.load(std::memory_order_acquire);
         return rings ? *rings : makeRings();
     }
-    /// The cells that these and the rings of other faces have.
-    RingCells &GetRingCells() const;
     /// \brief As CellType::GetBorderItem() of an edge or, behind these, of a vertex that the rings have in a
     /// lattice, without the CellType of the face.
     CellType::BorderItem const &GetLatticeItem(int const *turns, std::size_t item) const;
@@ -137,8 +135,6 @@ private:
     EntryTable<PlainFaceType, Destroy> _entries;
     std::atomic<std::size_t> _numUnmade{0};
 };
-
-inline RingCells &PlainFaceType::GetRingCells() const { return _types._ringCells; }
 
 /// \brief Gathers the control points of plain base faces.  One thread uses it at a time.
 class PlainFaceGatherer {

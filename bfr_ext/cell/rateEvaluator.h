@@ -7,8 +7,6 @@
 
 #include <opensubdiv/bfr/tessellation.h>
 
-#include <array>
-#include <cstddef>
 #include <vector>
 
 namespace OpenSubdivHex::BfrExt::internal {
@@ -35,38 +33,13 @@ private:
     std::vector<double> _coords; // none until they are asked for
 };
 
-/// \brief Divides places of a plain base face among its children, in the order of RefineCell().
-///
-/// Children with the same places share matrices: half cells of a quad, mostly.
-struct RatePlan {
-    struct Child {
-        std::size_t GetHeapSize() const { return GetHeapSizes(places, runs); }
-
-        std::size_t like = 0; ///< the first child with the same places
-        std::vector<BfrPlace>
-            places; ///< by row, by the child's own coordinates; of the first such child alone
-        std::vector<PlaceRun> runs;
-    };
-    /// The derivatives of a child's coordinates by Bfr's u and v.
-    struct ToOwn {
-        Pair rows[2];
-    };
-
-    /// Makes one of places that are those of a tessellation.
-    RatePlan(std::vector<BfrPlace> const &ofFace, FaceShape shape);
-    std::size_t GetHeapSize() const { return GetHeapSizes(children, toOwn); }
-
-    std::vector<Child> children;
-    std::vector<ToOwn> toOwn; ///< by place
-};
-
 /// \brief Evaluates a Bfr::Tessellation, with rates of segments, of a base face that a BorderEvaluator has.
 ///
 /// BorderEvaluator makes the points on the border.  Other results have dense matrices: one for each pair of inner
 /// rates for the places inside, and one for each rate for derivatives on an edge.  So tessellations with other rates
 /// on the edges share the matrix of the inside.  The type of the face keeps the matrices; for a plain face that is
-/// not in a lattice, the types of its children do, which are few.  Matrices of many places are made each time, block by
-/// block, and not kept.
+/// not in a lattice, the types of its children do, which are few.  Matrices stand in blocks of places, and where there are many blocks, they are
+/// made each time and not kept.
 template <typename REAL>
 class RateEvaluator {
 public:
@@ -93,37 +66,34 @@ private:
         std::ptrdiff_t stride;
         int const *indices; // by column, null: all in turn
     };
-    // With a row for each place: for the points, the second one being empty, or for the derivatives by two coordinates.
-    using Matrices = std::array<PlaceMatrix<REAL>, 2>;
-    using Rows = std::vector<std::vector<double>>;
-    using InnerKey = std::array<int, 4>; // tells the places inside
+    // Matrices with a row for each place: for the points, or for the derivatives by u and v.
+    struct Matrices {
+        std::size_t GetHeapSize() const { return GetHeapSizes(matrices, runs); }
 
-    static std::array<Rows, 2> findRows(Source const &source, std::vector<BfrPlace> const &places,
-                                        bool hasDerivatives);
+        std::vector<PlaceMatrix<REAL>> matrices;
+        std::vector<PlaceRun> runs; ///< none: all places in turn
+    };
+
+    using Rows = std::vector<std::vector<double>>;
+
+    static std::vector<Rows> findRows(Source const &source, std::vector<BfrPlace> const &places,
+                                      bool hasDerivatives);
     static Matrices makeMatrices(Source const &source, std::vector<BfrPlace> const &places,
                                  bool hasDerivatives);
+    static Matrices makeInside(Source const &source, std::vector<BfrPlace> const &places,
+                               FaceShape shape, bool hasDerivatives);
     template <typename FUNCTION>
     void forEachEdge(FUNCTION const &function) const;
     void evaluateVertex(int edge, int first) const;
     void evaluateEdge(int edge, int rate, int first) const;
     // The kind of face, with its parameterization.
     int getFaceKey() const;
-    InnerKey getInnerKey() const {
-        return {getFaceKey(), int(_inner.GetSize()), _inner.GetRate(0), _inner.GetRate(1)};
-    }
-    Source getChild(PlainFaceType const &type, std::size_t child) const;
+    FaceShape getShape(Source const &source) const;
+    void evaluateInside(Source const &source);
     void evaluateInside(Source const &source, PatternOf of);
-    void evaluateInside(PlainFaceType const &type, PatternOf of);
-    void evaluateChild(Source const &source, RatePlan const &plan, PatternOf of, bool isKept,
-                       int firstPlace) const;
     void evaluateDerivativesOnEdge(Source const &source, int edge, int rate, int first) const;
-    void turnDerivatives(RatePlan const &plan, std::vector<PlaceRun> const &runs,
-                         int firstPlace) const;
-    template <std::size_t SIZE, typename MAKE>
-    void sumUp(Source const &source, PatternOf of, std::array<int, SIZE> const &key, bool isKept,
-               MAKE const &make, std::vector<PlaceRun> const *runs, int firstPlace) const;
     void sumUp(Source const &source, Matrices const &matrices, bool areDerivatives,
-               std::vector<PlaceRun> const *runs, int firstPlace) const;
+               int firstPlace) const;
     REAL *getResult(std::size_t kind, int place) const {
         return _results[kind] + std::ptrdiff_t(place) * _resultStride;
     }

@@ -175,8 +175,7 @@ public:
 
     RingCells(CellTypes &types, CellRules const &rules)
         : _types(types), _masks(rules, types.GetMemory()), _found(types.GetMemory()),
-          _faces(types.GetMemory()), _latticeItems(types.GetMemory()),
-          _plans(types.GetMemory()) {}
+          _faces(types.GetMemory()), _latticeItems(types.GetMemory()) {}
 
     CellRules const &GetRules() const { return _masks.GetRules(); }
     InnerMasks &GetMasks() { return _masks; }
@@ -196,12 +195,6 @@ public:
     template <typename MAKE>
     RingFace const &FindFace(Key const &key, MAKE const &make) {
         return find<RingFace>(_faces, 0, key, make);
-    }
-
-    /// The places of a tessellation, which make() gave when it was first called with a key.
-    template <typename PLAN, typename MAKE>
-    PLAN const &FindPlan(int const *begin, int const *end, MAKE const &make) {
-        return _plans.Get<PLAN>(0, begin, end, make);
     }
 
     /// \brief Returns the first result of make() for a kind of items in the lattice of a size of faces: mostly all
@@ -229,7 +222,6 @@ private:
     PatternTable _found; // pointers, by kind and rings
     PatternTable _faces;
     PatternTable _latticeItems;
-    PatternTable _plans;
 };
 
 /// \brief An edge or a vertex of a base face that has rings of its own, since the face itself is not plain or
