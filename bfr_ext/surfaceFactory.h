@@ -193,6 +193,23 @@ public:
     /// Face-varying channels.
     int GetNumFVarChannels() const { return _refiner.GetNumFVarChannels(); }
 
+    /// \brief Finds the base face, and (u, v) in it, of a place on the control mesh.
+    ///
+    /// Behind FarExt::FirstStep::Truncate this leads to the surface level; without a first step the place itself is returned.
+    /// A truncation cuts a third off each end of an edge.  What is left of a face of level 0 becomes its F-face, and each corner a
+    /// part of the V-face of its vertex.  Triangles are mapped to triangles: from edges to the centre or, in a corner, the vertex.
+    /// A place on an edge is the same point of the surface from both faces.  A vertex is its V-vertex, or the centre of its V-face.
+    ///
+    /// \param controlFace  face of level 0
+    /// \param controlUv    u and v in it, as in Bfr::Parameterization; inside the face
+    /// \param face         gets the base face, which may be a hole
+    /// \param uv           gets u and v in it
+    /// \return             false, with nothing written: InvalidArgument for a face out of range, or for a refiner that refined
+    ///                     again behind a first step; Unsupported behind FarExt::FirstStep::TriHex
+    template <typename REAL>
+    bool FindSurfacePlace(Index controlFace, REAL const controlUv[2], Index *face, REAL uv[2],
+                          FarExt::CallStatus *status = nullptr) const;
+
     /// \brief Whether a face has a surface.  False is no failure: an error callback (FarExt::SetErrorCallback()) is not called.
     ///
     /// \param status  the reason:
@@ -280,7 +297,7 @@ public:
     }
     /// @}
 
-    /// \brief Makes any of these, without telling an error callback where the face has none.
+    /// \brief Makes a surface of any kind of data, without calling an error callback if the face has none.
     ///
     /// \param face           whose surface it is
     /// \param interpolation  how the data are refined

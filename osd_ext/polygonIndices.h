@@ -106,7 +106,7 @@ struct DrawnFaces {
     std::vector<int> faces;
     /// The face of level 0 that it lies in: TopologyLevel::GetFaceBaseFace.
     std::vector<int> baseFaces;
-    /// The label of that.  Empty without labels.
+    /// The label of the base face.  Empty without labels.
     std::vector<int> labels;
     /// @}
 
