@@ -116,7 +116,7 @@ bool SurfaceFactory::FindSurfacePlace(Index controlFace, REAL const controlUv[2]
     CallStatus result;
     if (controlFace < 0 || controlFace >= control.GetNumFaces()) {
         result = CallStatus(StatusCode::InvalidArgument, ComponentType::Face, controlFace,
-                            "face " + std::to_string(controlFace) + " is none of the " +
+                            "face " + std::to_string(controlFace) + " is not one of the " +
                                 std::to_string(control.GetNumFaces()) + " faces of level 0");
     } else if (_refiner.GetHexSchemeOptions().firstStep == FarExt::FirstStep::TriHex) {
         result = CallStatus(StatusCode::Unsupported, ComponentType::NoComponent, Far::INDEX_INVALID,
