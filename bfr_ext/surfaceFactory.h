@@ -43,11 +43,11 @@ class TypeCache;
 /// near, it grows by some kilobytes for it and for each type of cell that evaluation goes through.  It also keeps the
 /// weights of evaluated tessellations, for types of faces or of cells.
 ///
-/// **Memory** is bounded by what the constructor is told, with what factories keep of faces.  When half of it is taken, the cache forgets all types and finds
-/// again those that are asked for: results keep their bits.  The other half is for the types before, which surfaces that
-/// have them keep until they are initialised again or go.  GetMemory() exceeds the bound where surfaces of several such
-/// generations live at once, or a single one needs more.  If a model has more types than there is memory for, they
-/// are found again in each frame: in some milliseconds each.
+/// **Memory**, with what factories keep of faces, is bounded by the constructor's argument.  When half of it is taken, the
+/// cache forgets all types, and finds those that are asked for again: results keep their bits.  The other half is for the
+/// generation of types before: surfaces keep their type until they are initialised again or destroyed.  GetMemory() exceeds
+/// the bound if surfaces of several generations live at once, or if one generation needs more.  If a model has more types
+/// than memory holds, types are found again in each frame, in some milliseconds each.
 ///
 /// Surfaces keep what they need of the cache, so that it may go before them.
 class OPENSUBDIVHEX_API SurfaceFactoryCache {

@@ -123,11 +123,12 @@ public:
     ///
     /// Weights of a local point sum to 1; some are negative.  The same bits for any number of threads.
     ///
-    /// \return  null on failure: InvalidArgument (a level out of range or without full topology: see
-    ///          GetRefineUniformOptions(); a channel that the mesh has not; a tolerance that is negative or no number, or without positions; an eye without a tolerance), Unsupported (a level that is not refined by hexagonal steps; a
-    ///          boundary that follows the paper's rule, VTX_BOUNDARY_NONE, whose edge is named; what has
-    ///          no limit: see LimitStencilTableFactory; a mesh of holes alone), or TooLarge (more than 2^28 - 1 patches, or
-    ///          2^31 - 1 weights of points).
+    /// \return  null on failure:
+    ///          - InvalidArgument: a level out of range or without full topology (GetRefineUniformOptions()); a channel that the
+    ///            mesh does not have; a tolerance that is negative, no number, or without positions; an eye without tolerance
+    ///          - Unsupported: levels of other than hexagonal steps; a boundary with VTX_BOUNDARY_NONE, whose edge is named; a
+    ///            vertex or face without a limit (LimitStencilTableFactory); a mesh of holes alone
+    ///          - TooLarge: more than 2^28 - 1 patches, or 2^31 - 1 weights of points
     static std::unique_ptr<Far::PatchTable const>
     Create(TopologyRefiner const &refiner, Options options, CallStatus *status = nullptr);
 
@@ -141,7 +142,7 @@ public:
 
     /// \brief The stencils of the points of a face-varying channel of the mesh, as its patches have them.
     ///
-    /// \return  null on failure, as Create(); InvalidArgument for a channel that the mesh has not
+    /// \return  null on failure, as Create(); InvalidArgument for a channel that the mesh does not have
     static std::unique_ptr<Far::StencilTable const>
     CreateLocalPointFaceVaryingStencilTable(TopologyRefiner const &refiner, Options options,
                                             int channel = 0, CallStatus *status = nullptr);
