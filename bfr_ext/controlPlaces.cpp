@@ -22,9 +22,11 @@ namespace {
 /// A point, or a difference of two, in the plane of a face.
 using PlanePoint = std::array<double, 2>;
 
-PlanePoint subtract(PlanePoint const &a, PlanePoint const &b) { return {a[0] - b[0], a[1] - b[1]}; }
+PlanePoint subtractPlanePoints(PlanePoint const &a, PlanePoint const &b) {
+    return {a[0] - b[0], a[1] - b[1]};
+}
 
-PlanePoint mix(PlanePoint const &a, PlanePoint const &b, double t) {
+PlanePoint mixPlanePoints(PlanePoint const &a, PlanePoint const &b, double t) {
     return {a[0] + t * (b[0] - a[0]), a[1] + t * (b[1] - a[1])};
 }
 
@@ -32,9 +34,9 @@ PlanePoint mix(PlanePoint const &a, PlanePoint const &b, double t) {
 struct PlaneTriangle {
     /// The weights of the second and the third corner that make a point.
     PlanePoint FindWeights(PlanePoint const &point) const {
-        PlanePoint const a = subtract(second, apex);
-        PlanePoint const b = subtract(third, apex);
-        PlanePoint const p = subtract(point, apex);
+        PlanePoint const a = subtractPlanePoints(second, apex);
+        PlanePoint const b = subtractPlanePoints(third, apex);
+        PlanePoint const p = subtractPlanePoints(point, apex);
         double const area = a[0] * b[1] - a[1] * b[0];
         return {(p[0] * b[1] - p[1] * b[0]) / area, (a[0] * p[1] - a[1] * p[0]) / area};
     }
@@ -51,7 +53,7 @@ struct PlaneTriangle {
     PlanePoint third;
 };
 
-PlanePoint getVertex(Parameterization const &face, int vertex) {
+PlanePoint getPlaneVertex(Parameterization const &face, int vertex) {
     PlanePoint point;
     face.GetVertexCoord(vertex, point.data());
     face.ConvertToPlane(point.data(), point.data());
@@ -59,9 +61,9 @@ PlanePoint getVertex(Parameterization const &face, int vertex) {
 }
 
 /// The centre of a face, of half a polygon the middle of its long edge.
-PlanePoint getCenter(Parameterization const &face) {
+PlanePoint getPlaneCenter(Parameterization const &face) {
     if (face.GetFaceShape().isHalf) {
-        return mix(getVertex(face, 0), getVertex(face, 1), 0.5);
+        return mixPlanePoints(getPlaneVertex(face, 0), getPlaneVertex(face, 1), 0.5);
     }
     PlanePoint point;
     face.GetCenterCoord(point.data());
@@ -83,9 +85,10 @@ TruncatedPlace findTruncatedPlace(Parameterization const &face, PlanePoint const
     int const size = face.GetFaceSize();
     std::vector<PlanePoint> corners; // of the F-face
     for (int i = 0; i < size; ++i) {
-        PlanePoint const vertex = getVertex(face, i);
-        corners.push_back(mix(vertex, getVertex(face, (i + size - 1) % size), kCut));
-        corners.push_back(mix(vertex, getVertex(face, (i + 1) % size), kCut));
+        PlanePoint const vertex = getPlaneVertex(face, i);
+        corners.push_back(
+            mixPlanePoints(vertex, getPlaneVertex(face, (i + size - 1) % size), kCut));
+        corners.push_back(mixPlanePoints(vertex, getPlaneVertex(face, (i + 1) % size), kCut));
         PlaneTriangle const cutOff = {vertex, corners.end()[-2], corners.end()[-1]};
         PlanePoint const weights = cutOff.FindWeights(point);
         if (weights[0] + weights[1] < 1) {
@@ -95,7 +98,7 @@ TruncatedPlace findTruncatedPlace(Parameterization const &face, PlanePoint const
     TruncatedPlace best = {0, false, {}};
     double bestWeight = 0;
     for (int i = 0; i < 2 * size; ++i) {
-        PlaneTriangle const sector = {getCenter(face), corners[std::size_t(i)],
+        PlaneTriangle const sector = {getPlaneCenter(face), corners[std::size_t(i)],
                                       corners[std::size_t((i + 1) % (2 * size))]};
         PlanePoint const weights = sector.FindWeights(point);
         double const least = std::min(weights[0], weights[1]);
@@ -151,15 +154,15 @@ bool SurfaceFactory::FindSurfacePlace(Index controlFace, REAL const controlUv[2]
     }
     Parameterization const ofSurface = GetFaceParameterization(side.face);
     int const size = ofSurface.GetFaceSize();
-    PlaneTriangle triangle = {getCenter(ofSurface), getVertex(ofSurface, side.local),
-                              getVertex(ofSurface, (side.local + 1) % size)};
+    PlaneTriangle triangle = {getPlaneCenter(ofSurface), getPlaneVertex(ofSurface, side.local),
+                              getPlaneVertex(ofSurface, (side.local + 1) % size)};
     if (place.isAtVertex) {
         std::swap(triangle.second, triangle.third);
         // The vertex is the centre of its face, unless it is kept: V-vertices come before all others.
         Index const numVertexVertices = _level.GetFaceVertices(0)[1];
         for (int i = 0; i < size; ++i) {
             if (_faces.GetVertex(side.face, i) < numVertexVertices) {
-                triangle.apex = getVertex(ofSurface, i);
+                triangle.apex = getPlaneVertex(ofSurface, i);
             }
         }
     }
