@@ -61,7 +61,7 @@ def _find_error(name, signature, args, kwargs):
     return None
 
 
-def _wrap(function, name, numSelf=0):
+def _wrap(function, name, owner="", numSelf=0):
     @functools.wraps(function)
     def call(*args, **kwargs):
         try:
@@ -72,11 +72,13 @@ def _wrap(function, name, numSelf=0):
             if not found or None in found:
                 raise
         raise max(found, key=operator.itemgetter(0))[1]
+    call.__module__ = __package__
+    call.__qualname__ = owner + function.__name__
     return call
 
 
 def name_wrong_arguments(module, names):
-    """Has the functions and classes of these names raise errors that name the argument, what is needed and what was given."""
+    """Has functions and classes raise errors that name the argument, what is needed and what was given."""
     for name in names:
         value = getattr(module, name)
         if not isinstance(value, type):
@@ -85,8 +87,8 @@ def name_wrong_arguments(module, names):
             continue
         for member, function in list(vars(value).items()):
             if isinstance(function, staticmethod):
-                setattr(value, member, staticmethod(_wrap(function.__func__, member)))
+                setattr(value, member, staticmethod(_wrap(function.__func__, member, name + ".")))
             elif member == "__init__" and "__members__" not in vars(value):
-                setattr(value, member, _wrap(function, name, 1))
+                setattr(value, member, _wrap(function, name, name + ".", 1))
             elif callable(function) and not member.startswith("__"):
-                setattr(value, member, _wrap(function, member))
+                setattr(value, member, _wrap(function, member, name + "."))
