@@ -38,7 +38,8 @@ def _find_error(name, signature, args, kwargs):
     positional = list(itertools.takewhile(lambda name: name != "*", names))
     values = {**dict(zip(positional, args)), **kwargs}
     if len(args) > len(positional):
-        return 0, TypeError(f"{name}: at most {len(positional)} arguments without a name, not {len(args)}")
+        most, given = (len(listed) - names.count("self") for listed in (positional, args))
+        return 0, TypeError(f"{name}: at most {most} arguments without a name, not {given}")
     for key in kwargs:
         if key not in names:
             return 0, TypeError(f"{name}: there is no argument '{key}'")
@@ -55,9 +56,9 @@ def _find_error(name, signature, args, kwargs):
             return number, TypeError(f"{key}: {expected} is needed, not {given}")
     for key, kind, inner, _ in parameters:
         if "int" in (kind, inner) and values.get(key) is not None:
-            if not -2**31 <= operator.index(values[key]) < 2**31:
-                return len(names), ValueError(
-                    f"{key}: {values[key]} is a number that 32 bits do not hold")
+            for number in values[key] if kind == "List" else [values[key]]:
+                if not -2**31 <= operator.index(number) < 2**31:
+                    return len(names), ValueError(f"{key}: {number} is a number that 32 bits do not hold")
     return None
 
 

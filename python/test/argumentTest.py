@@ -330,8 +330,12 @@ def test_simple_arguments(refiner):
         with pytest.raises(TypeError, match=message) as caught:
             call()
         assert caught.value.__context__ is None
+    with pytest.raises(TypeError, match="^refine_uniform: at most 3 arguments without a name, not 4$"):
+        refiner.refine_uniform(3, True, None, 4)
     with pytest.raises(ValueError, match="^level: 4294967296 is a number that 32 bits do not hold$"):
         refiner.refine_uniform(2**32)
+    with pytest.raises(ValueError, match="^fvar_channels: -4294967296 is a number that 32 bits"):
+        osh.create_triangle_indices(refiner.get_level(1), fvar_channels=[0, -2**32])
     with pytest.raises(TypeError, match="No constructor"):
         osh.Surface(refiner)
 
