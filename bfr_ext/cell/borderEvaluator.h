@@ -95,8 +95,7 @@ private:
     };
     std::uint64_t _typeNumber = 0;
     std::vector<KnownItem> _items;
-    // The matrices of the edge and of the vertex that were last asked for: mostly others of the face, or of another one of
-    // its type, are alike.
+    // The matrices of the edge and of the vertex that were last asked for: mostly others of the type are alike.
     struct Found {
         PatternTable *patterns;
         PatternOf of;
