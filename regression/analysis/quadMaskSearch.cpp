@@ -35,7 +35,7 @@ using FarExt::HexSchemeOptions;
 using FarExt::kHexagon;
 using FarExt::internal::Level;
 using FarExt::internal::QuadCorner;
-using FarExt::internal::QuadRow;
+using FarExt::internal::MaskRow;
 using FarExt::internal::RefinementRules;
 
 constexpr int kQuad = 4;
@@ -255,7 +255,7 @@ private:
         Level const &level = getLevel(depth);
         std::vector<CornerRow> rows(std::size_t(level.numCorners));
         for (QuadCorner const &quad : level.quadCorners) {
-            QuadRow const row = FarExt::internal::FindQuadRow(level.numHexagonalSteps, quad.flags);
+            MaskRow const row = FarExt::internal::FindQuadRow(level.numHexagonalSteps, quad.flags);
             rows[std::size_t(quad.corner)] = {row.position, row.isBackwards};
         }
         return rows;
