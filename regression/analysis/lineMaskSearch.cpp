@@ -45,27 +45,17 @@ constexpr LineTableRow kLineTable[] = {
 };
 constexpr int kNumLineRows = int(std::size(kLineTable));
 
-MaskRows makeLineRows() {
-    MaskRows rows;
+SearchRows makeLineRows() {
+    SearchRows rows;
     for (LineTableRow const &shipped : kLineTable) {
-        MaskRow &row = rows.emplace_back();
+        SearchRow &row = rows.emplace_back();
         bool const hasMask = shipped.parts[0] > 0;
         row.size = !hasMask ? 0 : shipped.face == kHalf ? kTrapezoid : kHexagon;
-        row.ofVertex = shipped.ofVertex == kNone ? MaskRow::kNone : shipped.ofVertex / row.parts;
+        row.ofVertex = shipped.ofVertex == kNone ? SearchRow::kNone : shipped.ofVertex / row.parts;
         std::transform(shipped.parts, shipped.parts + row.size, row.weights,
                        [&row](int part) { return part / row.parts; });
     }
     return rows;
-}
-
-/// The places of a half of a face that one of its corners inside is in.
-std::array<int, kTrapezoid> findHalf(Level const &level, int face, int local) {
-    std::array<int, kTrapezoid> half = {0, 1, 2, 3};
-    int const end = level.GetDiagonalEnd(face);
-    for (int i = 0; i < kTrapezoid && !level.IsHalfFace(face); ++i) {
-        half[std::size_t(i)] = FarExt::GetPlaceInHalves(local < end ? 1 : 0, i, end);
-    }
-    return half;
 }
 
 CornerRow findLineRow(Level const &level, LineRowCorner const &tag) {
@@ -83,12 +73,10 @@ CornerRow findLineRow(Level const &level, LineRowCorner const &tag) {
         int const local = tag.corner - level.faceFirstCorner[std::size_t(face)];
         result.ofVertex = row.ofVertex == kNone ? CornerRow::kNone : i;
         result.ofFVertex = row.parts[0] > 0 ? i : CornerRow::kNone;
-        result.SetPlaces(isHalf ? tag.place : local, isHalf ? kTrapezoid : kHexagon, isBackwards);
-        if (isHalf) {
-            std::array<int, kTrapezoid> const half = findHalf(level, face, local);
-            std::transform(result.places.begin(), result.places.begin() + kTrapezoid,
-                           result.places.begin(),
-                           [&half](int place) { return half[std::size_t(place)]; });
+        if (isHalf && result.ofFVertex != CornerRow::kNone) {
+            result.SetPlacesInHalf(level, face, local, isBackwards);
+        } else {
+            result.SetPlaces(local, kHexagon, isBackwards);
         }
     }
     return result;
@@ -134,15 +122,15 @@ Shape makeStrip(int numColumns, int numRows) {
     return shape;
 }
 
-MaskRows makeLineStart() {
+SearchRows makeLineStart() {
     using FarExt::Interpolation;
-    MaskRows rows = makeLineRows();
+    SearchRows rows = makeLineRows();
     double half[kTrapezoid * kTrapezoid];
     FarExt::ComputeHalfFaceVertexMask(FaceMask::Smooth, Interpolation::Vertex, kTrapezoid, half);
     constexpr int kNumFaces = 3;
     for (int i = 0; i < kNumLineRows; ++i) {
-        MaskRow &row = rows[std::size_t(i)];
-        row.ofVertex = row.ofVertex == MaskRow::kNone ? row.ofVertex : 1.0 / (1 + kNumFaces);
+        SearchRow &row = rows[std::size_t(i)];
+        row.ofVertex = row.ofVertex == SearchRow::kNone ? row.ofVertex : 1.0 / (1 + kNumFaces);
         if (row.size == kHexagon) {
             FarExt::ComputeFaceVertexMask(FaceMask::Smooth, Interpolation::Vertex, kHexagon,
                                           row.weights);
@@ -197,7 +185,7 @@ void LineMaskSearch::chooseVertices() {
     _surface.NeedOnly(_derivatives.GetNeeded());
 }
 
-Eigen::VectorXd LineMaskSearch::measureLifts(MaskRows const &rows) const {
+Eigen::VectorXd LineMaskSearch::measureLifts(SearchRows const &rows) const {
     constexpr double kOfMean = 0.1; // of what means at one distance deviate by
     std::vector<Eigen::Matrix3d> off = _derivatives.Compute(_surface.Refine(rows, _lifted));
     std::vector<Eigen::Matrix3d> means(_areasOfGroups.size(), Eigen::Matrix3d::Zero());
@@ -216,13 +204,13 @@ Eigen::VectorXd LineMaskSearch::measureLifts(MaskRows const &rows) const {
     return Eigen::Map<Eigen::VectorXd const>(values.data(), Eigen::Index(values.size()));
 }
 
-Eigen::VectorXd LineMaskSearch::measureMore(MaskRows const &,
+Eigen::VectorXd LineMaskSearch::measureMore(SearchRows const &,
                                             Eigen::VectorXd const &weights) const {
     constexpr double kOfChange = 0.03;
     return kOfChange * (weights - GetStart());
 }
 
-auto LineMaskSearch::judgeMore(MaskRows const &rows) const -> std::vector<Entry> {
+auto LineMaskSearch::judgeMore(SearchRows const &rows) const -> std::vector<Entry> {
     constexpr int kLevel = 5;
     std::vector<Entry> entries;
     for (std::pair<int, int> const &size : {std::pair(14, 8), std::pair(20, 10), std::pair(9, 6)}) {
@@ -244,10 +232,10 @@ auto LineMaskSearch::judgeMore(MaskRows const &rows) const -> std::vector<Entry>
     return entries;
 }
 
-void LineMaskSearch::print(MaskRows const &rows) const {
+void LineMaskSearch::print(SearchRows const &rows) const {
     constexpr char const *kNames[] = {"kOnLine", "kHalf", "kBehind", "kBeyond"};
     for (int i = 0; i < kNumLineRows; ++i) {
-        MaskRow const &row = rows[std::size_t(i)];
+        SearchRow const &row = rows[std::size_t(i)];
         LineTableRow const &shipped = kLineTable[i];
         std::string const ofVertex = shipped.ofVertex == kNone
                                          ? "kNone"

@@ -2,7 +2,7 @@
 #ifndef OPENSUBDIVHEX_REGRESSION_ANALYSIS_LINE_MASK_SEARCH_H
 #define OPENSUBDIVHEX_REGRESSION_ANALYSIS_LINE_MASK_SEARCH_H
 
-#include "maskTable.h"
+#include "tableSearch.h"
 
 #include <vector>
 
@@ -25,11 +25,11 @@ public:
     explicit LineMaskSearch(int level);
 
 protected:
-    Eigen::VectorXd measureLifts(MaskRows const &rows) const override;
-    Eigen::VectorXd measureMore(MaskRows const &rows,
+    Eigen::VectorXd measureLifts(SearchRows const &rows) const override;
+    Eigen::VectorXd measureMore(SearchRows const &rows,
                                 Eigen::VectorXd const &weights) const override;
-    std::vector<Entry> judgeMore(MaskRows const &rows) const override;
-    void print(MaskRows const &rows) const override;
+    std::vector<Entry> judgeMore(SearchRows const &rows) const override;
+    void print(SearchRows const &rows) const override;
 
 private:
     void chooseVertices();

@@ -23,7 +23,6 @@ using FarExt::FaceMask;
 using FarExt::kHexagon;
 using FarExt::internal::Level;
 using FarExt::internal::QuadCorner;
-using FarExt::internal::QuadRow;
 
 constexpr int kQuad = 4;
 constexpr int kNumRegular = 4; // faces at a vertex
@@ -45,10 +44,10 @@ constexpr QuadTableRow kQuadTable[] = {
 constexpr int kNumQuadRows = int(std::size(kQuadTable));
 
 /// The rows of the table, then the masks in quads, by level from 1 on.
-MaskRows makeQuadRows() {
-    MaskRows rows;
+SearchRows makeQuadRows() {
+    SearchRows rows;
     for (QuadTableRow const &shipped : kQuadTable) {
-        MaskRow &row = rows.emplace_back();
+        SearchRow &row = rows.emplace_back();
         int const *const first = shipped.parts;
         int const *const behind = first + kHexagon;
         bool const hasMask = std::any_of(first, behind, [](int part) { return part > 0; });
@@ -58,7 +57,7 @@ MaskRows makeQuadRows() {
         std::transform(first, behind, row.weights, [&row](int part) { return part / row.parts; });
     }
     for (int level = 1; level <= kNumInQuads; ++level) {
-        MaskRow &row = rows.emplace_back();
+        SearchRow &row = rows.emplace_back();
         row.size = kQuad;
         row.isSymmetric = true;
         row.parts = kPartsInQuads;
@@ -67,18 +66,11 @@ MaskRows makeQuadRows() {
     return rows;
 }
 
-MaskedSurface makeQuadSurface(Shape const &shape, int level, MaskRows const &shipped) {
-    return MaskedSurface(shape, kSmooth, level, shipped, [&shipped](Level const &parent) {
-        return FindQuadRows(parent, shipped, kNumQuadRows);
-    });
-}
-
-} // namespace
-
-std::vector<CornerRow> FindQuadRows(Level const &level, MaskRows const &rows, int firstInQuads) {
+std::vector<CornerRow> findQuadRows(Level const &level, SearchRows const &rows) {
     std::vector<CornerRow> result(std::size_t(level.numCorners));
     for (QuadCorner const &quad : level.quadCorners) {
-        QuadRow const found = FarExt::internal::FindQuadRow(level.numHexagonalSteps, quad.flags);
+        FarExt::internal::MaskRow const found =
+            FarExt::internal::FindQuadRow(level.numHexagonalSteps, quad.flags);
         if (found.position < 0) {
             continue;
         }
@@ -91,6 +83,17 @@ std::vector<CornerRow> FindQuadRows(Level const &level, MaskRows const &rows, in
                           found.isBackwards);
         }
     }
+    // V' follows rows where all corners have them.
+    for (int vert = 0; vert < level.numVertices; ++vert) {
+        bool hasAll = true;
+        for (int k = level.vertFirstFace[vert]; k < level.vertFirstFace[vert + 1]; ++k) {
+            hasAll = hasAll &&
+                     result[std::size_t(level.GetVertexCorner(k))].ofVertex != CornerRow::kNone;
+        }
+        for (int k = level.vertFirstFace[vert]; k < level.vertFirstFace[vert + 1] && !hasAll; ++k) {
+            result[std::size_t(level.GetVertexCorner(k))].ofVertex = CornerRow::kNone;
+        }
+    }
     if (level.numHexagonalSteps < 1 || level.numHexagonalSteps > kNumInQuads) {
         return result;
     }
@@ -98,12 +101,19 @@ std::vector<CornerRow> FindQuadRows(Level const &level, MaskRows const &rows, in
         for (int i = 0; i < kQuad && level.GetFaceSize(face) == kQuad && !level.IsHalfFace(face);
              ++i) {
             CornerRow &row = result[std::size_t(level.faceFirstCorner[std::size_t(face)] + i)];
-            row.ofFVertex = firstInQuads + level.numHexagonalSteps - 1;
+            row.ofFVertex = kNumQuadRows + level.numHexagonalSteps - 1;
             row.SetPlaces(i, kQuad, false);
         }
     }
     return result;
 }
+
+MaskedSurface makeQuadSurface(Shape const &shape, int level, SearchRows const &shipped) {
+    return MaskedSurface(shape, kSmooth, level, shipped,
+                         [&shipped](Level const &parent) { return findQuadRows(parent, shipped); });
+}
+
+} // namespace
 
 QuadMaskSearch::QuadMaskSearch(int numFaces, int level)
     : TableSearch(makeQuadRows()), _numFaces(numFaces),
@@ -126,10 +136,10 @@ QuadMaskSearch::QuadMaskSearch(int numFaces, int level)
 
 bool QuadMaskSearch::isRegular() const { return _numFaces == kNumRegular; }
 
-MaskRows QuadMaskSearch::makeStart() const {
-    MaskRows rows = getShipped();
+SearchRows QuadMaskSearch::makeStart() const {
+    SearchRows rows = getShipped();
     for (int i = 0; i < kNumQuadRows; ++i) {
-        MaskRow &row = rows[std::size_t(i)];
+        SearchRow &row = rows[std::size_t(i)];
         if (kQuadTable[i].numFaces != _numFaces) {
             continue;
         }
@@ -204,7 +214,7 @@ void QuadMaskSearch::findCenters() {
     }
 }
 
-Eigen::VectorXd QuadMaskSearch::measureLifts(MaskRows const &rows) const {
+Eigen::VectorXd QuadMaskSearch::measureLifts(SearchRows const &rows) const {
     std::vector<Eigen::Matrix3d> const derivatives =
         _derivatives.Compute(_surface.Refine(rows, _lifted));
     Eigen::Matrix3d exact = PlaneDerivatives::GetExact();
@@ -225,7 +235,7 @@ Eigen::VectorXd QuadMaskSearch::measureLifts(MaskRows const &rows) const {
 }
 
 // 0 where curvature is bounded around a vertex and around a quad.
-Eigen::VectorXd QuadMaskSearch::measureMore(MaskRows const &rows, Eigen::VectorXd const &) const {
+Eigen::VectorXd QuadMaskSearch::measureMore(SearchRows const &rows, Eigen::VectorXd const &) const {
     // How much less than these further eigenvalues are, for curvature to settle soon.
     constexpr double kFurtherBowl = 0.9;
     constexpr double kFurtherTilt = 0.95;
@@ -252,7 +262,7 @@ Eigen::VectorXd QuadMaskSearch::measureMore(MaskRows const &rows, Eigen::VectorX
     return Eigen::Map<Eigen::VectorXd const>(values.data(), Eigen::Index(values.size()));
 }
 
-auto QuadMaskSearch::judgeMore(MaskRows const &rows) const -> std::vector<Entry> {
+auto QuadMaskSearch::judgeMore(SearchRows const &rows) const -> std::vector<Entry> {
     constexpr int kLevel = 5;
     std::vector<Entry> entries;
     auto const refine = [&](Shape const &shape) {
@@ -275,9 +285,9 @@ auto QuadMaskSearch::judgeMore(MaskRows const &rows) const -> std::vector<Entry>
     return entries;
 }
 
-void QuadMaskSearch::print(MaskRows const &rows) const {
+void QuadMaskSearch::print(SearchRows const &rows) const {
     for (int i = 0; i < kNumQuadRows; ++i) {
-        MaskRow const &row = rows[std::size_t(i)];
+        SearchRow const &row = rows[std::size_t(i)];
         if (kQuadTable[i].numFaces == _numFaces) {
             std::printf("{%d, \"%s\", %.0f, %s},\n", _numFaces, kQuadTable[i].path,
                         row.parts * row.ofVertex, FormatMask(row).c_str());

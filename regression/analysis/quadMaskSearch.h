@@ -2,7 +2,7 @@
 #ifndef OPENSUBDIVHEX_REGRESSION_ANALYSIS_QUAD_MASK_SEARCH_H
 #define OPENSUBDIVHEX_REGRESSION_ANALYSIS_QUAD_MASK_SEARCH_H
 
-#include "maskTable.h"
+#include "tableSearch.h"
 
 #include <vector>
 
@@ -32,15 +32,15 @@ public:
     QuadMaskSearch(int numFaces, int level);
 
 protected:
-    Eigen::VectorXd measureLifts(MaskRows const &rows) const override;
-    Eigen::VectorXd measureMore(MaskRows const &rows,
+    Eigen::VectorXd measureLifts(SearchRows const &rows) const override;
+    Eigen::VectorXd measureMore(SearchRows const &rows,
                                 Eigen::VectorXd const &weights) const override;
-    std::vector<Entry> judgeMore(MaskRows const &rows) const override;
-    void print(MaskRows const &rows) const override;
+    std::vector<Entry> judgeMore(SearchRows const &rows) const override;
+    void print(SearchRows const &rows) const override;
 
 private:
     bool isRegular() const;
-    MaskRows makeStart() const;
+    SearchRows makeStart() const;
     void chooseVertices();
     void findCenters();
 
@@ -52,12 +52,6 @@ private:
     PlaneDerivatives _derivatives;
     std::vector<MeshCenter> _centers; // at the first level with constant masks
 };
-
-/// \brief The rows of corners with paths, by their place in the table.
-///
-/// \param firstInQuads  place in \p rows of the masks in quads, by level from 1 on
-std::vector<CornerRow> FindQuadRows(FarExt::internal::Level const &level, MaskRows const &rows,
-                                    int firstInQuads);
 
 } // namespace OpenSubdivHex::Regression
 

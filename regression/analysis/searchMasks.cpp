@@ -8,6 +8,7 @@
 #include "leastSquares.h"
 #include "lineMaskSearch.h"
 #include "maskSearch.h"
+#include "quadLineSearch.h"
 #include "quadMaskSearch.h"
 #include "searchPatchConstants.h"
 
@@ -139,6 +140,14 @@ std::vector<Table> makeTables() {
                       [](Effort const &effort) {
                           searchTable(LineMaskSearch(effort.lineLevel), effort.maxLineSteps);
                       }});
+    for (int numQuads = 1; numQuads <= 4; ++numQuads) {
+        tables.push_back(
+            {"quads-beside-lines-" + std::to_string(numQuads),
+             "far_ext/rules/quadLineRows.inl: beside vertices of lines with so many quads",
+             [=](Effort const &effort) {
+                 searchTable(QuadLineSearch(numQuads, effort.lineLevel), effort.maxLineSteps);
+             }});
+    }
     for (int steps = 0; steps <= 2; ++steps) {
         tables.push_back(
             {"patches-" + std::to_string(steps),
@@ -160,7 +169,7 @@ int main(int argc, char **argv) {
     if (wanted.empty()) {
         std::printf("usage: searchMasks [--quick] all | TABLE...\n\n");
         for (Table const &table : tables) {
-            std::printf("  %-13s %s\n", table.name.c_str(), table.where.c_str());
+            std::printf("  %-20s %s\n", table.name.c_str(), table.where.c_str());
         }
         std::printf("\nAll take some minutes; --quick ends each search after a few steps.\n");
         return 2;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-#ifndef OPENSUBDIVHEX_REGRESSION_ANALYSIS_MASK_TABLE_H
-#define OPENSUBDIVHEX_REGRESSION_ANALYSIS_MASK_TABLE_H
+#ifndef OPENSUBDIVHEX_REGRESSION_ANALYSIS_TABLE_SEARCH_H
+#define OPENSUBDIVHEX_REGRESSION_ANALYSIS_TABLE_SEARCH_H
 
 #include "localSubdivision.h"
 #include "surfaceLevels.h"
@@ -24,7 +24,7 @@ namespace OpenSubdivHex::Regression {
 inline constexpr int kMaxMaskSize = 6;
 
 /// \brief A row of a table of masks: the weights of an F-vertex, and its own weight in V'.
-struct MaskRow {
+struct SearchRow {
     static constexpr double kNone = -1;
 
     int size = 0;             ///< of the mask; 0 where the row has none
@@ -46,14 +46,15 @@ struct MaskRow {
         }
     }
 };
-using MaskRows = std::vector<MaskRow>;
+using SearchRows = std::vector<SearchRow>;
 
-/// \brief Where the weights of a corner stand in MaskRows.
+/// \brief Where the weights of a corner stand in SearchRows.
 struct CornerRow {
     static constexpr int kNone = -1;
 
     int ofFVertex = kNone; ///< the row with the mask
-    int ofVertex = kNone;  ///< the row with the weight in V'
+    int ofVertex =
+        kNone; ///< the row with the F-vertex's weight in V', of which the vertex has the rest
     /// By weight of the mask, a place in the face.
     std::array<int, kMaxMaskSize> places = {};
 
@@ -63,6 +64,10 @@ struct CornerRow {
             places[std::size_t(i)] = (local + (isBackwards ? size - i : i)) % size;
         }
     }
+    /// Those of half a hexagon, from a vertex inside the mesh on: of a half face, or of the half of a crossed face that
+    /// the vertex is in.
+    void SetPlacesInHalf(FarExt::internal::Level const &level, int face, int local,
+                         bool isBackwards);
 };
 
 /// Columns that are computed at once: a position, or x, y, and the lifts of x and y.
@@ -78,24 +83,25 @@ public:
     /// \param rows  those of the library: with them, points are where the library has them
     /// \throws std::runtime_error  where they are not, or if \p shape cannot be refined
     MaskedSurface(Shape const &shape, FarExt::HexSchemeOptions schemeOptions, int level,
-                  MaskRows const &rows, FindRows const &findRows);
+                  SearchRows const &rows, FindRows const &findRows);
 
     FarExt::TopologyRefiner const &GetRefiner() const { return *_refiner; }
     /// The last level, by the library's masks.
     PolygonMesh const &GetMesh() const { return _mesh; }
     /// The last level, by \p rows.
-    PolygonMesh MakeMesh(MaskRows const &rows) const;
+    PolygonMesh MakeMesh(SearchRows const &rows) const;
 
     /// Lets Refine() compute these vertices of the last level alone; or all, where there are none.
     void NeedOnly(std::vector<int> const &vertices);
     /// Points of the last level.
-    MaskPoints Refine(MaskRows const &rows, MaskPoints points) const;
+    MaskPoints Refine(SearchRows const &rows, MaskPoints points) const;
     /// How a vertex of the level behind \p depth is made.
-    ChildRow GetRow(MaskRows const &rows, int depth, int cVertex) const;
+    ChildRow GetRow(SearchRows const &rows, int depth, int cVertex) const;
 
     /// Whether a corner has a row.
     bool IsUsed(int row) const { return _isUsed[std::size_t(row)]; }
-    /// The rows that tell V' of a vertex, one for each of its faces, sorted: each such list once.
+    /// The rows that tell V' of a vertex, one for each of its faces, sorted: each such list once, of vertices where all
+    /// faces have one.
     std::vector<std::vector<int>> const &GetRowsOfVertices() const { return _rowsOfVertices; }
 
 private:
@@ -117,9 +123,9 @@ private:
         std::vector<char> needed;
     };
 
-    static double getWeight(MaskRows const &rows, Source const &source);
+    static double getWeight(SearchRows const &rows, Source const &source);
     void addTruncation(int depth);
-    void addStep(int depth, MaskRows const &rows, std::vector<CornerRow> const &ofCorners);
+    void addStep(int depth, SearchRows const &rows, std::vector<CornerRow> const &ofCorners);
 
     FarExt::HexSchemeOptions const _schemeOptions;
     std::unique_ptr<FarExt::TopologyRefiner> _refiner;
@@ -160,7 +166,7 @@ void AddDeviation(double factor, Eigen::Matrix3d const &deviation, double ofSadd
 
 /// \brief A search for the weights in a table of masks.
 ///
-/// Weights are the free ones of the searched rows (MaskRow::ForEachFree), one row after the other.  What rows and V'
+/// Weights are the free ones of the searched rows (SearchRow::ForEachFree), one row after the other.  What rows and V'
 /// leave to 1 is kept from falling below 0.
 class TableSearch {
 public:
@@ -190,40 +196,40 @@ public:
 
 protected:
     /// \param rows  of the library
-    explicit TableSearch(MaskRows const &rows) : _shipped(rows), _start(rows) {}
+    explicit TableSearch(SearchRows const &rows) : _shipped(rows), _start(rows) {}
 
-    MaskRows const &getShipped() const { return _shipped; }
-    MaskRows const &getStart() const { return _start; }
+    SearchRows const &getShipped() const { return _shipped; }
+    SearchRows const &getStart() const { return _start; }
     /// Rows that are not searched for are the library's in both.
-    void search(std::vector<int> const &searched, MaskRows const &start);
+    void search(std::vector<int> const &searched, SearchRows const &start);
     /// Keeps what V' leaves of 1, at vertices with such rows, from falling below 0.
     void keepRests(std::vector<std::vector<int>> const &rowsOfVertices) {
         _rowsOfVertices = rowsOfVertices;
     }
 
     /// By how much lifted points are uneven.
-    virtual Eigen::VectorXd measureLifts(MaskRows const &rows) const = 0;
+    virtual Eigen::VectorXd measureLifts(SearchRows const &rows) const = 0;
     /// Further conditions, of which there need not be any.
-    virtual Eigen::VectorXd measureMore(MaskRows const &rows,
+    virtual Eigen::VectorXd measureMore(SearchRows const &rows,
                                         Eigen::VectorXd const &weights) const = 0;
-    virtual std::vector<Entry> judgeMore(MaskRows const &rows) const = 0;
-    virtual void print(MaskRows const &rows) const = 0;
+    virtual std::vector<Entry> judgeMore(SearchRows const &rows) const = 0;
+    virtual void print(SearchRows const &rows) const = 0;
 
 private:
     template <typename FUNCTION>
-    void forEachFree(MaskRows &rows, FUNCTION const &function) const;
-    Eigen::VectorXd gather(MaskRows rows) const;
-    MaskRows spread(Eigen::VectorXd const &weights) const;
-    Eigen::VectorXd measureRests(MaskRows const &rows) const;
+    void forEachFree(SearchRows &rows, FUNCTION const &function) const;
+    Eigen::VectorXd gather(SearchRows rows) const;
+    SearchRows spread(Eigen::VectorXd const &weights) const;
+    Eigen::VectorXd measureRests(SearchRows const &rows) const;
 
-    MaskRows _shipped;
-    MaskRows _start;
+    SearchRows _shipped;
+    SearchRows _start;
     std::vector<int> _searched;
     std::vector<std::vector<int>> _rowsOfVertices;
 };
 
 /// The numbers in braces that begin or end a row in the library's tables: the weights, in its parts.
-std::string FormatMask(MaskRow const &row);
+std::string FormatMask(SearchRow const &row);
 
 } // namespace OpenSubdivHex::Regression
 

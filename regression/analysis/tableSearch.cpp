@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "maskTable.h"
+#include "tableSearch.h"
 
 #include "smoothness.h"
 
@@ -56,8 +56,22 @@ Eigen::VectorXd toVector(std::vector<double> const &values) {
 
 } // namespace
 
+void CornerRow::SetPlacesInHalf(Level const &level, int face, int local, bool isBackwards) {
+    constexpr int kTrapezoid = 4;
+    std::array<int, kTrapezoid> half = {0, 1, 2, 3};
+    int const end = level.GetDiagonalEnd(face);
+    for (int i = 0; i < kTrapezoid && !level.IsHalfFace(face); ++i) {
+        half[std::size_t(i)] = FarExt::GetPlaceInHalves(local < end ? 1 : 0, i, end);
+    }
+    auto const first = int(std::find(half.begin(), half.end(), local) - half.begin());
+    SetPlaces(first, kTrapezoid, isBackwards);
+    for (int i = 0; i < kTrapezoid; ++i) {
+        places[std::size_t(i)] = half[std::size_t(places[std::size_t(i)])];
+    }
+}
+
 MaskedSurface::MaskedSurface(Shape const &shape, FarExt::HexSchemeOptions schemeOptions, int level,
-                             MaskRows const &rows, FindRows const &findRows)
+                             SearchRows const &rows, FindRows const &findRows)
     : _schemeOptions(schemeOptions), _controlPoints(getPoints(shape)), _isUsed(rows.size(), false) {
     OpenSubdiv::Sdc::Options options;
     options.SetVtxBoundaryInterpolation(OpenSubdiv::Sdc::Options::VTX_BOUNDARY_EDGE_ONLY);
@@ -108,7 +122,7 @@ void MaskedSurface::addTruncation(int depth) {
     _steps.push_back(std::move(step));
 }
 
-void MaskedSurface::addStep(int depth, MaskRows const &rows,
+void MaskedSurface::addStep(int depth, SearchRows const &rows,
                             std::vector<CornerRow> const &ofCorners) {
     auto const &refinement = getLevels(*_refiner).refinements[std::size_t(depth)];
     Level const &level = *refinement.parent;
@@ -143,33 +157,33 @@ void MaskedSurface::addStep(int depth, MaskRows const &rows,
         for (int k = first; k < level.vertFirstFace[vert + 1]; ++k) {
             ofVertex.push_back(ofCorners[std::size_t(level.GetVertexCorner(k))].ofVertex);
         }
-        bool const hasRows = !ofVertex.empty() && std::find(ofVertex.begin(), ofVertex.end(),
-                                                            CornerRow::kNone) == ofVertex.end();
         auto const rule = rules.GetVertexRule(vert);
         for (int k = first; k < level.vertFirstFace[vert + 1]; ++k) {
+            int const row = ofVertex[std::size_t(k - first)];
             made.sources.push_back({false,
                                     refinement.GetCornerChildVertex(level.GetVertexCorner(k)),
-                                    rule.GetFaceWeight(k - first),
-                                    hasRows ? ofVertex[std::size_t(k - first)] : CornerRow::kNone});
-        }
-        if (hasRows) {
-            made.parent = vert;
-            for (int row : ofVertex) {
+                                    rule.GetFaceWeight(k - first), row});
+            if (row != CornerRow::kNone) {
                 _isUsed[std::size_t(row)] = true;
+                made.parent = vert;
             }
-            std::sort(ofVertex.begin(), ofVertex.end());
-            rowsOfVertices.insert(ofVertex);
+        }
+        if (made.parent == CornerRow::kNone) {
+            for (int i = 0; i < rule.numSources; ++i) {
+                made.sources.push_back({true, rule.sources[i], rule.weights[i]});
+            }
             continue;
         }
-        for (int i = 0; i < rule.numSources; ++i) {
-            made.sources.push_back({true, rule.sources[i], rule.weights[i]});
+        std::sort(ofVertex.begin(), ofVertex.end());
+        if (ofVertex.front() != CornerRow::kNone) {
+            rowsOfVertices.insert(ofVertex);
         }
     }
     _rowsOfVertices.assign(rowsOfVertices.begin(), rowsOfVertices.end());
     _steps.push_back(std::move(step));
 }
 
-PolygonMesh MaskedSurface::MakeMesh(MaskRows const &rows) const {
+PolygonMesh MaskedSurface::MakeMesh(SearchRows const &rows) const {
     MaskPoints const points = Refine(rows, _controlPoints);
     PolygonMesh mesh = _mesh;
     for (int i = 0; i < mesh.GetNumVertices(); ++i) {
@@ -203,15 +217,15 @@ void MaskedSurface::NeedOnly(std::vector<int> const &vertices) {
     }
 }
 
-double MaskedSurface::getWeight(MaskRows const &rows, Source const &source) {
+double MaskedSurface::getWeight(SearchRows const &rows, Source const &source) {
     if (source.row == CornerRow::kNone) {
         return source.weight;
     }
-    MaskRow const &row = rows[std::size_t(source.row)];
+    SearchRow const &row = rows[std::size_t(source.row)];
     return source.place == kOfVertex ? row.ofVertex : row.weights[source.place];
 }
 
-MaskPoints MaskedSurface::Refine(MaskRows const &rows, MaskPoints points) const {
+MaskPoints MaskedSurface::Refine(SearchRows const &rows, MaskPoints points) const {
     for (Step const &step : _steps) {
         MaskPoints refined = MaskPoints::Zero(Eigen::Index(step.made.size()), kNumMaskColumns);
         // F-vertices, which come last, first.
@@ -236,7 +250,7 @@ MaskPoints MaskedSurface::Refine(MaskRows const &rows, MaskPoints points) const 
     return points;
 }
 
-ChildRow MaskedSurface::GetRow(MaskRows const &rows, int depth, int cVertex) const {
+ChildRow MaskedSurface::GetRow(SearchRows const &rows, int depth, int cVertex) const {
     std::vector<Made> const &allMade = _steps[std::size_t(depth)].made;
     std::map<int, double> result;
     Made const &made = allMade[std::size_t(cVertex)];
@@ -328,7 +342,7 @@ void AddDeviation(double factor, Eigen::Matrix3d const &deviation, double ofSadd
 
 TableSearch::~TableSearch() = default;
 
-void TableSearch::search(std::vector<int> const &searched, MaskRows const &start) {
+void TableSearch::search(std::vector<int> const &searched, SearchRows const &start) {
     _searched = searched;
     for (int row : searched) {
         _start[std::size_t(row)] = start[std::size_t(row)];
@@ -336,25 +350,25 @@ void TableSearch::search(std::vector<int> const &searched, MaskRows const &start
 }
 
 template <typename FUNCTION>
-void TableSearch::forEachFree(MaskRows &rows, FUNCTION const &function) const {
+void TableSearch::forEachFree(SearchRows &rows, FUNCTION const &function) const {
     for (int position : _searched) {
-        MaskRow &row = rows[std::size_t(position)];
+        SearchRow &row = rows[std::size_t(position)];
         row.ForEachFree([&](double &weight, int) { function(weight, row); });
     }
 }
 
-Eigen::VectorXd TableSearch::gather(MaskRows rows) const {
+Eigen::VectorXd TableSearch::gather(SearchRows rows) const {
     std::vector<double> values;
-    forEachFree(rows, [&](double weight, MaskRow const &) { values.push_back(weight); });
+    forEachFree(rows, [&](double weight, SearchRow const &) { values.push_back(weight); });
     return toVector(values);
 }
 
-MaskRows TableSearch::spread(Eigen::VectorXd const &weights) const {
-    MaskRows rows = _shipped;
+SearchRows TableSearch::spread(Eigen::VectorXd const &weights) const {
+    SearchRows rows = _shipped;
     double const *next = weights.data();
-    forEachFree(rows, [&](double &weight, MaskRow const &) { weight = *next++; });
+    forEachFree(rows, [&](double &weight, SearchRow const &) { weight = *next++; });
     for (int position : _searched) {
-        MaskRow &row = rows[std::size_t(position)];
+        SearchRow &row = rows[std::size_t(position)];
         for (int i = 1; i < row.size && row.isSymmetric; ++i) {
             row.weights[i] = row.weights[std::min(i, row.size - i)];
         }
@@ -366,14 +380,14 @@ MaskRows TableSearch::spread(Eigen::VectorXd const &weights) const {
 }
 
 Eigen::VectorXd TableSearch::Round(Eigen::VectorXd const &weights) const {
-    MaskRows rows = spread(weights);
-    forEachFree(rows, [](double &weight, MaskRow const &row) {
+    SearchRows rows = spread(weights);
+    forEachFree(rows, [](double &weight, SearchRow const &row) {
         weight = std::round(row.parts * weight) / row.parts;
     });
     return gather(rows);
 }
 
-Eigen::VectorXd TableSearch::measureRests(MaskRows const &rows) const {
+Eigen::VectorXd TableSearch::measureRests(SearchRows const &rows) const {
     constexpr double kOfNegative = 10;
     std::vector<double> values;
     for (int position : _searched) {
@@ -390,7 +404,7 @@ Eigen::VectorXd TableSearch::measureRests(MaskRows const &rows) const {
 }
 
 Eigen::VectorXd TableSearch::Measure(Eigen::VectorXd const &weights) const {
-    MaskRows const rows = spread(weights);
+    SearchRows const rows = spread(weights);
     Eigen::VectorXd const parts[] = {measureLifts(rows), measureMore(rows, weights),
                                      measureRests(rows)};
     Eigen::VectorXd values(parts[0].size() + parts[1].size() + parts[2].size());
@@ -399,13 +413,13 @@ Eigen::VectorXd TableSearch::Measure(Eigen::VectorXd const &weights) const {
 }
 
 auto TableSearch::Judge(Eigen::VectorXd const &weights) const -> std::vector<Entry> {
-    MaskRows const rows = spread(weights);
+    SearchRows const rows = spread(weights);
     std::vector<Entry> entries = judgeMore(rows);
     entries.insert(entries.begin(), {"quadratics", measureLifts(rows).norm()});
     return entries;
 }
 
-std::string FormatMask(MaskRow const &row) {
+std::string FormatMask(SearchRow const &row) {
     std::string result = "{";
     for (int i = 0; i < row.size; ++i) {
         result += (i > 0 ? ", " : "") + std::to_string(std::lround(row.parts * row.weights[i]));
