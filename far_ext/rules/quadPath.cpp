@@ -237,12 +237,16 @@ QuadLineRow FindQuadLineRow(int numSteps, QuadFlags flags) {
     auto const kind = LineFlag::Kind((line - 1) % LineFlag::kNumKinds);
     MaskTable const &rows = getRowsBesideLines();
     std::size_t place = getPlaceBesideLine(numSteps, line, digits);
+    // Of regular lines; next to a vertex with one quad the flags are at one of these, too.
+    bool const isNextToOne = line < getLine({2, LineFlag::kAtLine}) && kind != LineFlag::kAtLine;
     if (!rows.Has(place) && (kind == LineFlag::kDown || kind == LineFlag::kTop)) {
-        place = getPlaceBesideLine(numSteps, getLine({2, kind}), digits); // of regular lines
+        int const ofTwo = isNextToOne ? int(kind) - LineFlag::kDown : int(kind);
+        place = getPlaceBesideLine(numSteps, getLine({2, LineFlag::Kind(ofTwo)}), digits);
     }
     // The E-face of an edge of the line, and what F-faces are made of it.
     int const behindFirst = numSteps == kNumLineSteps - 1 ? digits % kDigit : 0;
-    bool const isOfHalf = kind == LineFlag::kAtLine && digits > 0 && behindFirst == 0;
+    bool const isAlongLine = kind == LineFlag::kAtLine || (isNextToOne && kind == LineFlag::kDown);
+    bool const isOfHalf = isAlongLine && digits > 0 && behindFirst == 0;
     return {rows.Find(place, isBackwards), isOfHalf};
 }
 
