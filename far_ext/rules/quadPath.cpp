@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstring>
-#include <tuple>
+#include <utility>
 
 namespace OpenSubdivHex::FarExt::internal {
 
@@ -20,15 +20,22 @@ constexpr int kOtherFaces = 4;
 constexpr int kNoVertex = 5; // of flags beside a line alone
 constexpr int kNumVertices = kNoVertex + 1;
 constexpr int kNumEndings = kDigit * kDigit;
-// Kinds of flags beside lines, by number of quads and LineFlag::Kind; 0 is of no line.
-constexpr int kNumLines = 1 + LineFlag::kMaxQuads * LineFlag::kNumKinds;
+// Kinds of flags beside lines; 0 is of no line.  At a line there are as many as quads there, and two next to a vertex with
+// one quad; away from one four.
+constexpr int kNumNextToOne = 2;
+constexpr int kNumAt = 1 + LineFlag::kMaxQuads * (LineFlag::kMaxQuads + 1) / 2 + kNumNextToOne;
+constexpr int kNumKindsAway = LineFlag::kNumKinds - LineFlag::kDown;
+constexpr int kMinQuadsAway = 2;
+constexpr int kNumAway = 1 + (LineFlag::kMaxQuads - kMinQuadsAway + 1) * kNumKindsAway;
 
-// One more than these are flags: a path, of as many digits as there were steps, a vertex and a line; or, in the constant
+// One more than these are flags: a path, of as many digits as there were steps, a vertex and lines; or, in the constant
 // levels, two digits, of a vertex or of a quad.
 struct Path {
-    int line;
+    int lines[2]; // kinds by LineRole
     int vertex;
     int digits;
+
+    int GetLine(LineRole role) const { return lines[int(role)]; }
 };
 
 int getKind(int numFaces) {
@@ -40,17 +47,25 @@ int getKind(int numFaces) {
 }
 
 int getLine(LineFlag flag) {
-    return 1 + (flag.numQuads - 1) * LineFlag::kNumKinds + int(flag.kind);
+    if (flag.GetRole() == LineRole::Away) {
+        return 1 + (flag.numQuads - kMinQuadsAway) * kNumKindsAway + flag.kind - LineFlag::kDown;
+    }
+    if (flag.numQuads == 1) {
+        return flag.kind == LineFlag::kAtLine ? 1 : 2 + flag.kind - LineFlag::kDown;
+    }
+    return 1 + kNumNextToOne + flag.numQuads * (flag.numQuads - 1) / 2 + flag.kind;
 }
 
 QuadFlag makeFlag(Path path) {
-    return QuadFlag(1 + kNumPaths * (path.line * kNumVertices + path.vertex) + path.digits);
+    int const lines = path.GetLine(LineRole::Away) * kNumAt + path.GetLine(LineRole::At);
+    return QuadFlag(1 + kNumPaths * (lines * kNumVertices + path.vertex) + path.digits);
 }
-static_assert(1 + kNumPaths * kNumLines * kNumVertices <= 1 << 16);
+static_assert(1 + kNumPaths * kNumAway * kNumAt * kNumVertices <= 1 << 16);
 
 Path getPath(QuadFlag flag) {
     int const kinds = (flag - 1) / kNumPaths;
-    return {kinds / kNumVertices, kinds % kNumVertices, (flag - 1) % kNumPaths};
+    int const lines = kinds / kNumVertices;
+    return {{lines / kNumAt, lines % kNumAt}, kinds % kNumVertices, (flag - 1) % kNumPaths};
 }
 
 int readDigits(char const *path) {
@@ -114,17 +129,19 @@ constexpr LineTableRow kLineTable[] = {
 #include "quadLineRows.inl"
 };
 
-std::size_t getPlaceBesideLine(int numSteps, int line, int digits) {
-    return std::size_t((numSteps * kNumLines + line) * kNumPaths + digits);
+std::size_t getPlaceBesideLine(int numSteps, LineRole role, int line, int digits) {
+    int const ofRole = role == LineRole::Away ? line : kNumAway + line;
+    return std::size_t((numSteps * (kNumAway + kNumAt) + ofRole) * kNumPaths + digits);
 }
 
 MaskTable const &getRowsBesideLines() {
     static MaskTable const kRows = [] {
         constexpr char kFlags[] = "abcdvtVT"; // as LineFlag::Kind has them
-        MaskTable rows(getPlaceBesideLine(kNumLineSteps, 0, 0));
+        MaskTable rows(getPlaceBesideLine(kNumLineSteps, LineRole::Away, 0, 0));
         for (LineTableRow const &row : kLineTable) {
-            auto const kind = LineFlag::Kind(std::strchr(kFlags, row.flag) - kFlags);
-            rows.Add(getPlaceBesideLine(int(std::strlen(row.path)), getLine({row.numQuads, kind}),
+            LineFlag const flag = {row.numQuads,
+                                   LineFlag::Kind(std::strchr(kFlags, row.flag) - kFlags)};
+            rows.Add(getPlaceBesideLine(int(std::strlen(row.path)), flag.GetRole(), getLine(flag),
                                         readDigits(row.path)),
                      row.ofVertex, row.parts);
         }
@@ -137,15 +154,18 @@ QuadFlag append(QuadFlag flag, int numSteps, int digit) {
     if (flag == 0) {
         return 0;
     }
-    auto [line, vertex, digits] = getPath(flag);
+    Path path = getPath(flag);
     if (numSteps + 1 >= kNumLineSteps) {
-        line = 0;
+        path.lines[0] = path.lines[1] = 0;
+        if (path.vertex == kNoVertex) {
+            return 0;
+        }
     }
-    if (line == 0 && vertex == kNoVertex) {
-        return 0;
-    }
+    int const vertex = path.vertex;
+    int const digits = path.digits;
     if (numSteps + 1 < kNumStepsToConstantMasks) {
-        return makeFlag({line, vertex, digits * kDigit + digit});
+        path.digits = digits * kDigit + digit;
+        return makeFlag(path);
     }
     // The first digit of three, or of the ending, has to be what is before it.
     int const ending = digits % kNumEndings;
@@ -171,10 +191,12 @@ LineSharpness sharpnessAfterStep(LineSharpness sharpness) {
 
 } // namespace
 
-QuadFlag MakeQuadFlag(int numFaces) { return makeFlag({0, getKind(numFaces), 0}); }
+QuadFlag MakeQuadFlag(int numFaces) { return makeFlag({{0, 0}, getKind(numFaces), 0}); }
 
 QuadFlag AddLineFlag(QuadFlag flag, LineFlag ofLine) {
-    return makeFlag({getLine(ofLine), flag == 0 ? kNoVertex : getPath(flag).vertex, 0});
+    Path path = flag == 0 ? Path{{0, 0}, kNoVertex, 0} : getPath(flag);
+    path.lines[int(ofLine.GetRole())] = getLine(ofLine);
+    return makeFlag(path);
 }
 
 bool QuadFlags::HasLine() const {
@@ -188,7 +210,9 @@ QuadFlags AppendToQuadFlags(QuadFlags flags, int numSteps, int outDigit, int inD
                         std::max(0.0f, flags.sharpness - 1),
                         {}};
     if (result.HasLine()) {
-        result.line = sharpnessAfterStep(flags.line);
+        for (LineRole const role : kLineRoles) {
+            result.lines[int(role)] = sharpnessAfterStep(flags.lines[int(role)]);
+        }
     }
     return result;
 }
@@ -222,32 +246,39 @@ MaskRow FindQuadRow(int numSteps, QuadFlags flags) {
                      isBackwards);
 }
 
-QuadLineRow FindQuadLineRow(int numSteps, QuadFlags flags) {
-    constexpr QuadLineRow kNoRow = {kNoMaskRow, false};
-    if (flags.out == 0 || flags.in == 0 || numSteps >= kNumLineSteps) {
+QuadLineRow FindQuadLineRow(int numSteps, QuadFlags flags, LineRole role) {
+    constexpr QuadLineRow kNoRow = {kNoMaskRow, false, 0};
+    float const share = flags.lines[int(role)].GetShare();
+    if (flags.out == 0 || flags.in == 0 || numSteps >= kNumLineSteps || share == 0) {
         return kNoRow;
     }
-    Path const out = getPath(flags.out);
-    Path const in = getPath(flags.in);
-    if (out.line == 0 || in.line == 0) {
+    Path const paths[2] = {getPath(flags.out), getPath(flags.in)};
+    std::pair<int, int> const out = {paths[0].GetLine(role), paths[0].digits};
+    std::pair<int, int> const in = {paths[1].GetLine(role), paths[1].digits};
+    if (out.first == 0 || in.first == 0) {
         return kNoRow;
     }
-    bool const isBackwards = std::tie(in.line, in.digits) < std::tie(out.line, out.digits);
-    auto const [line, vertex, digits] = isBackwards ? in : out;
-    auto const kind = LineFlag::Kind((line - 1) % LineFlag::kNumKinds);
+    bool const isBackwards = in < out;
+    auto const [line, digits] = isBackwards ? in : out;
     MaskTable const &rows = getRowsBesideLines();
-    std::size_t place = getPlaceBesideLine(numSteps, line, digits);
-    // Of regular lines; next to a vertex with one quad the flags are at one of these, too.
-    bool const isNextToOne = line < getLine({2, LineFlag::kAtLine}) && kind != LineFlag::kAtLine;
-    if (!rows.Has(place) && (kind == LineFlag::kDown || kind == LineFlag::kTop)) {
-        int const ofTwo = isNextToOne ? int(kind) - LineFlag::kDown : int(kind);
-        place = getPlaceBesideLine(numSteps, getLine({2, LineFlag::Kind(ofTwo)}), digits);
+    std::size_t place = getPlaceBesideLine(numSteps, role, line, digits);
+    if (role == LineRole::Away && !rows.Has(place)) {
+        auto const kind = LineFlag::Kind(LineFlag::kDown + (line - 1) % kNumKindsAway);
+        if (kind == LineFlag::kDown || kind == LineFlag::kTop) { // as of regular lines
+            place = getPlaceBesideLine(numSteps, role, getLine({kMinQuadsAway, kind}), digits);
+        }
+    }
+    if (!rows.Has(place)) {
+        return kNoRow;
     }
     // The E-face of an edge of the line, and what F-faces are made of it.
+    bool isAlong = role == LineRole::At && line == getLine({1, LineFlag::kDown});
+    for (int numQuads = 1; numQuads <= LineFlag::kMaxQuads && role == LineRole::At; ++numQuads) {
+        isAlong = isAlong || line == getLine({numQuads, LineFlag::kAtLine});
+    }
     int const behindFirst = numSteps == kNumLineSteps - 1 ? digits % kDigit : 0;
-    bool const isAlongLine = kind == LineFlag::kAtLine || (isNextToOne && kind == LineFlag::kDown);
-    bool const isOfHalf = isAlongLine && digits > 0 && behindFirst == 0;
-    return {rows.Find(place, isBackwards), isOfHalf};
+    bool const isOfHalf = isAlong && digits > 0 && behindFirst == 0;
+    return {rows.Find(place, isBackwards), isOfHalf, double(share)};
 }
 
 } // namespace OpenSubdivHex::FarExt::internal

@@ -29,8 +29,17 @@ inline constexpr int kNumLineSteps = 3;
 /// From kNumStepsToConstantMasks steps on there are the flags alone that lie near a vertex of the quads, whose path
 /// begins with 3 3 ... 3, or near a quad, 0 0 ... 0; of the path the last two digits matter.
 ///
-/// Beside a smooth line a flag has the LineFlag that it came from, too, for kNumLineSteps levels.
+/// Beside smooth lines a flag has the LineFlags that it came from, too, for kNumLineSteps levels: one of a line that it
+/// is at, and one of another that it is at the other end of an edge from.
 using QuadFlag = std::uint16_t;
+
+/// \brief What a line is to a flag.
+enum class LineRole {
+    Away, ///< the line is at the other end of an edge of the corner
+    At    ///< it passes the corner
+};
+/// In the order in which their masks are mixed in: where a line at the corner is as sharp, no other one matters.
+inline constexpr LineRole kLineRoles[] = {LineRole::Away, LineRole::At};
 
 /// \brief A flag of a quad beside a smooth line, before the first step.
 ///
@@ -51,6 +60,10 @@ struct LineFlag {
 
     int numQuads; ///< at L
     Kind kind;
+
+    LineRole GetRole() const {
+        return kind < kDown || numQuads == 1 ? LineRole::At : LineRole::Away;
+    }
 };
 
 /// The flag at a vertex that has \p numFaces faces, all of them quads, before the first step.
@@ -65,7 +78,7 @@ QuadFlag FindQuadFlag(int numFaces, GETFACESIZE const &getFaceSize) {
     }
     return MakeQuadFlag(numFaces);
 }
-/// A flag before the first step, which may be 0, as one beside a line, too.
+/// A flag before the first step, which may be 0, as one beside a line, too, or as one beside another.
 QuadFlag AddLineFlag(QuadFlag flag, LineFlag ofLine);
 
 /// \brief The share of the masks beside a line.
@@ -83,7 +96,7 @@ struct QuadFlags {
     QuadFlag in;  ///< with the edge that ends there
     /// The sharpness of the sharpest edge there, or of the vertex itself, before the first step, less one for each step.
     float sharpness;
-    LineSharpness line; ///< of flags beside lines
+    LineSharpness lines[2]; ///< by LineRole, of flags beside lines
 
     bool HasAny() const { return out != 0 || in != 0; }
     /// Whether a flag is beside a line.
@@ -99,13 +112,14 @@ QuadFlags AppendToQuadFlags(QuadFlags flags, int numSteps, int outDigit, int inD
 /// of quads inside a mesh, whose mask is of hexagons.
 OPENSUBDIVHEX_API MaskRow FindQuadRow(int numSteps, QuadFlags flags);
 
-/// \brief The masks of a corner beside a line.
+/// \brief The masks of a corner beside a line, and their share.
 struct QuadLineRow {
     MaskRow row;
     bool isOfHalf; ///< of half a hexagon on the line: four weights
+    double share;  ///< 0 where there is no row
 };
-/// Finds those, of flags that are both beside a line.
-OPENSUBDIVHEX_API QuadLineRow FindQuadLineRow(int numSteps, QuadFlags flags);
+/// Finds those, of flags that both have the role.
+OPENSUBDIVHEX_API QuadLineRow FindQuadLineRow(int numSteps, QuadFlags flags, LineRole role);
 
 } // namespace OpenSubdivHex::FarExt::internal
 

@@ -13,16 +13,13 @@ using Far::Index;
 
 namespace {
 
-bool isSame(QuadFlags x, QuadFlags y) {
-    return x.out == y.out && x.in == y.in && x.sharpness == y.sharpness &&
-           x.line.line == y.line.line && x.line.cross == y.line.cross;
-}
+bool isSame(QuadFlags x, QuadFlags y) { return std::memcmp(&x, &y, sizeof x) == 0; }
 
 std::size_t hash(QuadFlags const *flags, Index count) {
     constexpr std::uint64_t kFactor = 0x9e3779b97f4a7c15u; // of Fibonacci hashing
     std::uint64_t result = 0;
     for (Index i = 0; i < count; ++i) {
-        std::uint64_t words[2];
+        std::uint64_t words[3];
         static_assert(sizeof words == sizeof(QuadFlags));
         std::memcpy(words, flags + i, sizeof words);
         for (std::uint64_t const word : words) {

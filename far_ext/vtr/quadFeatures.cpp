@@ -8,7 +8,7 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <utility>
+#include <unordered_map>
 #include <vector>
 
 namespace OpenSubdivHex::FarExt::internal {
@@ -62,11 +62,13 @@ private:
         return _level.GetEdgeSharpness(edge);
     }
     SharpEdges findSharpEdges(Index vert) const;
+    void add(Index corner, LineFlag out, LineFlag in, LineSharpness sharpness);
     void addSides(Index vert);
     void addSide(Index vert, int begin, int numFaces, LineSharpness sharpness);
     void addOtherEnd(Index corner, Index face, Index edge, LineFlag::Kind down, int numQuads,
                      LineSharpness sharpness);
-    float addBesideOne(Index corner, Index face, bool isOut, LineSharpness sharpness);
+    LineSharpness findBesideOne(Index corner, Index face, bool isOut,
+                                LineSharpness sharpness) const;
     bool isOnQuads(Index vert, int begin, int numFaces) const;
     Index getFaceOf(Index vert, int i) const {
         Far::ConstIndexArray const faces = _level.GetVertexFaces(vert);
@@ -75,6 +77,7 @@ private:
 
     Level &_level;
     std::vector<QuadCorner> _found;
+    std::unordered_map<Index, std::size_t> _indices; // in _found, by corner
 };
 
 QuadLineFinder::SharpEdges QuadLineFinder::findSharpEdges(Index vert) const {
@@ -114,6 +117,18 @@ bool QuadLineFinder::isOnQuads(Index vert, int begin, int numFaces) const {
     return true;
 }
 
+// Each corner is beside one line of a role at most.
+void QuadLineFinder::add(Index corner, LineFlag out, LineFlag in, LineSharpness sharpness) {
+    auto const [found, isNew] = _indices.try_emplace(corner, _found.size());
+    if (isNew) {
+        _found.push_back({corner, makeBaseFlags(_level, _level.faceVerts[corner])});
+    }
+    QuadFlags &flags = _found[found->second].flags;
+    flags.out = AddLineFlag(flags.out, out);
+    flags.in = AddLineFlag(flags.in, in);
+    flags.lines[int(out.GetRole())] = sharpness;
+}
+
 // Face i of a vertex lies between its edges i and i + 1.
 void QuadLineFinder::addSides(Index vert) {
     SharpEdges const edges = findSharpEdges(vert);
@@ -136,10 +151,8 @@ void QuadLineFinder::addSide(Index vert, int begin, int numFaces, LineSharpness 
     }
     // Flags are counted from both ends of the line.
     int const numFlags = 2 * numFaces;
-    QuadFlags const inside = makeBaseFlags(_level, vert);
     auto const makeFlag = [&](int i) {
-        auto const kind = LineFlag::Kind(std::min(i, numFlags - 1 - i));
-        return AddLineFlag(inside.out, {numFaces, kind});
+        return LineFlag{numFaces, LineFlag::Kind(std::min(i, numFlags - 1 - i))};
     };
     Far::ConstIndexArray const edges = _level.GetVertexEdges(vert);
     for (int i = 0; i < numFaces; ++i) {
@@ -148,10 +161,18 @@ void QuadLineFinder::addSide(Index vert, int begin, int numFaces, LineSharpness 
         Index const corner = _level.GetVertexCorner(_level.vertFirstFace[vert] +
                                                     (begin + i) % _level.GetNumVertexFaces(vert));
         LineSharpness own = sharpness;
-        if (numFaces == 2) {
-            own.cross = std::max(own.cross, addBesideOne(corner, face, i == 0, sharpness));
+        LineSharpness const one =
+            numFaces == 2 ? findBesideOne(corner, face, i == 0, sharpness) : LineSharpness{0, 0};
+        own.cross = std::max(own.cross, one.line);
+        if (one.GetShare() > own.GetShare()) {
+            LineFlag const along = {1, LineFlag::kDown};
+            LineFlag const other = {1, LineFlag::kTop};
+            add(corner, i == 0 ? along : other, i == 0 ? other : along,
+                {one.line, one.cross + own.GetShare()});
+        } else {
+            add(corner, makeFlag(2 * i), makeFlag(2 * i + 1),
+                {own.line, own.cross + one.GetShare()});
         }
-        _found.push_back({corner, {makeFlag(2 * i), makeFlag(2 * i + 1), inside.sharpness, own}});
         // The other ends of the edges of this face but those of the line.
         bool const isAtLine = i == 0 || i == numFaces - 1;
         LineFlag::Kind const down = isAtLine ? LineFlag::kDown : LineFlag::kDownBehind;
@@ -165,9 +186,11 @@ void QuadLineFinder::addSide(Index vert, int begin, int numFaces, LineSharpness 
     }
 }
 
-// The corner in a quad that a vertex next to it on the line has alone: with its edge that begins there, or with the one
-// that ends there.  Returns how sharp the line is at that vertex; 0 where it has other faces.
-float QuadLineFinder::addBesideOne(Index corner, Index face, bool isOut, LineSharpness sharpness) {
+// The corner at a line, in a quad that the next vertex there may have alone on its side: how sharp the line is at that
+// vertex, too; 0 where it has other faces or no line.  That vertex is at the other end of the edge that begins at the
+// corner, or of the one that ends there.
+LineSharpness QuadLineFinder::findBesideOne(Index corner, Index face, bool isOut,
+                                            LineSharpness sharpness) const {
     Index const atOne =
         isOut ? _level.GetNextCorner(face, corner) : _level.GetPrevCorner(face, corner);
     Index const vert = _level.faceVerts[atOne];
@@ -175,13 +198,8 @@ float QuadLineFinder::addBesideOne(Index corner, Index face, bool isOut, LineSha
     SharpEdges const edges = findSharpEdges(vert);
     sharpness.line = std::min({sharpness.line, edges.sharpness[1], getSharpness(edge)});
     sharpness.cross = std::max(sharpness.cross, edges.GetCross(_level.GetVertexSharpness(vert)));
-    if (!(sharpness.line > sharpness.cross) || _level.IsNonManifold(vert)) {
-        return 0;
-    }
-    QuadFlag const along = AddLineFlag(0, {1, LineFlag::kDown});
-    QuadFlag const other = AddLineFlag(0, {1, LineFlag::kTop});
-    _found.push_back({corner, {isOut ? along : other, isOut ? other : along, 0, sharpness}});
-    return sharpness.line;
+    bool const isLine = sharpness.line > sharpness.cross && !_level.IsNonManifold(vert);
+    return isLine ? sharpness : LineSharpness{0, 0};
 }
 
 // The corner at the other end of an edge from the line: not where its other edge leads to a line that is as sharp, or it is
@@ -202,27 +220,19 @@ void QuadLineFinder::addOtherEnd(Index corner, Index face, Index edge, LineFlag:
     if (!(sharpness.line > sharpness.cross)) {
         return;
     }
-    QuadFlag const ofDown = AddLineFlag(inside.out, {numQuads, down});
-    QuadFlag const ofTop = AddLineFlag(inside.out, {numQuads, LineFlag::Kind(down + 1)});
-    _found.push_back(
-        {corner, {isOut ? ofDown : ofTop, isOut ? ofTop : ofDown, inside.sharpness, sharpness}});
+    LineFlag const ofDown = {numQuads, down};
+    LineFlag const ofTop = {numQuads, LineFlag::Kind(down + 1)};
+    add(corner, isOut ? ofDown : ofTop, isOut ? ofTop : ofDown, sharpness);
 }
 
 void QuadLineFinder::Find() {
-    _level.quadCorners.clear();
     for (SharpVertex const &sharp : _level.sharpVerts) {
         addSides(sharp.vert);
     }
-    // Of two lines beside a corner the one with the larger share has it, less the share of the other.
-    std::sort(_found.begin(), _found.end(), [](QuadCorner const &x, QuadCorner const &y) {
-        return std::make_pair(x.corner, y.flags.line.GetShare()) <
-               std::make_pair(y.corner, x.flags.line.GetShare());
-    });
-    for (std::size_t i = 0; i < _found.size(); ++i) {
-        QuadCorner corner = _found[i];
-        for (; i + 1 < _found.size() && _found[i + 1].corner == corner.corner; ++i) {
-            corner.flags.line.cross += _found[i + 1].flags.line.GetShare();
-        }
+    std::sort(_found.begin(), _found.end(),
+              [](QuadCorner const &x, QuadCorner const &y) { return x.corner < y.corner; });
+    _level.quadCorners.clear();
+    for (QuadCorner const &corner : _found) {
         _level.quadCorners.push_back(corner);
     }
 }
@@ -352,7 +362,7 @@ void QuadFinder::forEachCorner(Index face, FUNCTION const &function) const {
         QuadFlags const atStart = getParent(start);
         QuadFlags const atEnd = getParent(end);
         auto const ofFlags = [](QuadFlag out, QuadFlag in, QuadFlags const &of) {
-            return QuadFlags{out, in, of.sharpness, of.line};
+            return QuadFlags{out, in, of.sharpness, {of.lines[0], of.lines[1]}};
         };
         made[places.endFVertex] = append(ofFlags(atEnd.in, atEnd.in, atEnd), 1, 2);
         made[places.startFVertex] = append(ofFlags(atStart.out, atStart.out, atStart), 2, 1);
@@ -366,11 +376,14 @@ void QuadFinder::forEachCorner(Index face, FUNCTION const &function) const {
         QuadFlags const beyond = getParent(otherEnd); // at the start, on the other side
         QuadFlags atVertex = ofFlags(beyond.in, atStart.out, atStart);
         atVertex.sharpness = std::max(atStart.sharpness, beyond.sharpness);
-        if (!atStart.HasLine()) {
-            atVertex.line = beyond.line;
-        } else if (beyond.HasLine()) {
-            atVertex.line.line = std::min(atStart.line.line, beyond.line.line);
-            atVertex.line.cross = std::max(atStart.line.cross, beyond.line.cross);
+        for (LineRole const role : kLineRoles) {
+            LineSharpness &own = atVertex.lines[int(role)];
+            LineSharpness const other = beyond.lines[int(role)];
+            bool const haveBoth = own.line > 0 && other.line > 0;
+            own = haveBoth       ? LineSharpness{std::min(own.line, other.line),
+                                           std::max(own.cross, other.cross)}
+                  : own.line > 0 ? own
+                                 : other;
         }
         made[places.startVertex] = append(atVertex, 3, 3);
     }

@@ -328,9 +328,13 @@ void RefinementRules::makeVertexWeights() {
             QuadFlags const flags =
                 _level.quadCorners.GetFlags(_level.GetVertexCorner(_level.vertFirstFace[vert] + i));
             double const before = rule.GetFaceWeight(i);
-            double const own = FindQuadLineRow(_level.numHexagonalSteps, flags).row.vertexWeight;
-            double const change =
-                own < 0 ? 0 : smoothShare * double(flags.line.GetShare()) * (own - before);
+            double change = 0;
+            for (LineRole const role : kLineRoles) {
+                QuadLineRow const own = FindQuadLineRow(_level.numHexagonalSteps, flags, role);
+                if (own.row.vertexWeight >= 0) {
+                    change += smoothShare * own.share * (own.row.vertexWeight - before - change);
+                }
+            }
             weights.push_back(before + change);
             ofVertex -= change;
         }
@@ -374,8 +378,10 @@ void RefinementRules::makeVertexWeights() {
     }
     if (_level.quadCorners.HasLines()) {
         auto const hasWeight = [this](QuadCorner const &quad) {
-            return quad.flags.line.GetShare() > 0 &&
-                   FindQuadLineRow(_level.numHexagonalSteps, quad.flags).row.vertexWeight >= 0;
+            return std::any_of(std::begin(kLineRoles), std::end(kLineRoles), [&](LineRole role) {
+                return FindQuadLineRow(_level.numHexagonalSteps, quad.flags, role)
+                           .row.vertexWeight >= 0;
+            });
         };
         for (Index const vert : listVertices(_level.quadCorners, hasWeight)) {
             setBesideLine(vert);
@@ -468,10 +474,11 @@ private:
     struct PathRows {
         MaskRow inside = kNoMaskRow;
         double ofInside = 0;
-        QuadLineRow besideLine = {kNoMaskRow, false};
-        double ofLine = 0;
+        QuadLineRow besideLines[2] = {{kNoMaskRow, false, 0}, {kNoMaskRow, false, 0}};
 
-        bool HasAny() const { return ofInside > 0 || ofLine > 0; }
+        bool HasAny() const {
+            return ofInside > 0 || besideLines[0].row.mask || besideLines[1].row.mask;
+        }
     };
     PathRows findPathRows(FaceTags const &tags, int corner) const;
     bool hasOwnRows(FaceTags const &tags) const;
@@ -573,9 +580,10 @@ auto RefinementRules::DenseRuleMaker::findPathRows(FaceTags const &tags, int cor
         result.inside = FindQuadRow(_level.numHexagonalSteps, flags);
         result.ofInside = result.inside.mask ? double(flags.GetShare()) : 0;
     }
-    if (flags.HasLine() && flags.line.GetShare() > 0) {
-        result.besideLine = FindQuadLineRow(_level.numHexagonalSteps, flags);
-        result.ofLine = result.besideLine.row.mask ? double(flags.line.GetShare()) : 0;
+    for (LineRole const role : kLineRoles) {
+        if (flags.HasLine()) {
+            result.besideLines[int(role)] = FindQuadLineRow(_level.numHexagonalSteps, flags, role);
+        }
     }
     return result;
 }
@@ -693,7 +701,10 @@ void RefinementRules::DenseRuleMaker::addRule(FaceTags const &tags) {
             for (std::size_t j = 0; j < half.size(); ++j) {
                 row[std::size_t(half[j])] += sharp * weights[j];
             }
-            double const ofLine = byPath.besideLine.isOfHalf ? std::min(sharp, byPath.ofLine) : 0.0;
+            double ofLine = 0;
+            for (QuadLineRow const &beside : byPath.besideLines) {
+                ofLine += beside.row.mask && beside.isOfHalf ? std::min(sharp, beside.share) : 0;
+            }
             if (hasOneFace) {
                 addOneFaceHalf({sectors, sector}, half, int(place), ofLine, row);
             }
@@ -708,8 +719,10 @@ void RefinementRules::DenseRuleMaker::addRule(FaceTags const &tags) {
             if (besideLine.share > 0 && besideLine.face == LineFace::Half) {
                 addHalfMask(besideLine.row, std::min(sharp, double(besideLine.share)));
             }
-            if (ofLine > 0) {
-                addHalfMask(byPath.besideLine.row, ofLine);
+            for (QuadLineRow const &beside : byPath.besideLines) {
+                if (beside.row.mask && beside.isOfHalf) {
+                    addHalfMask(beside.row, std::min(sharp, beside.share));
+                }
             }
         } else if (hasOneFace) {
             addOneFace({sectors, sector}, i, row);
@@ -724,8 +737,10 @@ void RefinementRules::DenseRuleMaker::addRule(FaceTags const &tags) {
         if (besideLine.share > 0 && besideLine.face != LineFace::Half) {
             addMask(besideLine.row, i, std::max(0.0, double(besideLine.share) - sharp), row);
         }
-        if (byPath.ofLine > 0 && !byPath.besideLine.isOfHalf) {
-            addMask(byPath.besideLine.row, i, std::max(0.0, byPath.ofLine - sharp), row);
+        for (QuadLineRow const &beside : byPath.besideLines) {
+            if (beside.row.mask && !beside.isOfHalf) {
+                addMask(beside.row, i, std::max(0.0, beside.share - sharp), row);
+            }
         }
         addRow(row);
     }

@@ -107,23 +107,22 @@ SearchRows makeQuadLineStart() {
 std::vector<CornerRow> findQuadLineRows(Level const &level) {
     std::vector<CornerRow> result(std::size_t(level.numCorners));
     for (QuadCorner const &quad : level.quadCorners) {
-        if (!quad.flags.HasLine()) {
-            continue;
-        }
-        auto const [found, isHalf] =
-            FarExt::internal::FindQuadLineRow(level.numHexagonalSteps, quad.flags);
-        if (found.position < 0 || quad.flags.line.GetShare() == 0) {
-            continue;
-        }
-        CornerRow &row = result[std::size_t(quad.corner)];
-        int const face = level.FindFaceOfCorner(quad.corner);
-        int const local = quad.corner - level.faceFirstCorner[std::size_t(face)];
-        row.ofFVertex = found.position;
-        row.ofVertex = found.vertexWeight < 0 ? CornerRow::kNone : found.position;
-        if (isHalf) {
-            row.SetPlacesInHalf(level, face, local, found.isBackwards);
-        } else {
-            row.SetPlaces(local, level.GetFaceSize(face), found.isBackwards);
+        for (FarExt::internal::LineRole const role : FarExt::internal::kLineRoles) {
+            auto const found =
+                FarExt::internal::FindQuadLineRow(level.numHexagonalSteps, quad.flags, role);
+            if (found.share == 0) {
+                continue;
+            }
+            CornerRow &row = result[std::size_t(quad.corner)];
+            int const face = level.FindFaceOfCorner(quad.corner);
+            int const local = quad.corner - level.faceFirstCorner[std::size_t(face)];
+            row.ofFVertex = found.row.position;
+            row.ofVertex = found.row.vertexWeight < 0 ? CornerRow::kNone : found.row.position;
+            if (found.isOfHalf) {
+                row.SetPlacesInHalf(level, face, local, found.row.isBackwards);
+            } else {
+                row.SetPlaces(local, level.GetFaceSize(face), found.row.isBackwards);
+            }
         }
     }
     return result;

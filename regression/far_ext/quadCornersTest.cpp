@@ -24,7 +24,7 @@ std::vector<QuadCorner> makeCorners() {
         if (corner % 6 < 4 && !isGap) {
             corners.push_back(
                 {corner,
-                 {FarExt::internal::QuadFlag(1 + corner % 6), 1, corner == kOdd ? 0.5f : 0}});
+                 {FarExt::internal::QuadFlag(1 + corner % 6), 1, corner == kOdd ? 0.5f : 0, {}}});
         }
     }
     return corners;
@@ -43,6 +43,10 @@ void expectSame(QuadCorner const &tag, QuadCorner const &expected) {
     EXPECT_EQ(tag.flags.out, expected.flags.out);
     EXPECT_EQ(tag.flags.in, expected.flags.in);
     EXPECT_EQ(tag.flags.sharpness, expected.flags.sharpness);
+    for (FarExt::internal::LineRole role : FarExt::internal::kLineRoles) {
+        EXPECT_EQ(tag.flags.lines[int(role)].GetShare(),
+                  expected.flags.lines[int(role)].GetShare());
+    }
 }
 
 TEST(QuadCorners, HasTheCornersThatWereAdded) {
