@@ -47,9 +47,11 @@ inline constexpr LineRole kLineRoles[] = {LineRole::Away, LineRole::At};
 struct LineFlag {
     static constexpr int kMaxQuads = 4;
     enum Kind : std::int8_t {
-        kAtLine, ///< at L; counted from the line: kAtLine along it, kAtLine + 1 with the other edge of that quad ...
-        kDown =
-            4, ///< at another end of an edge of L, with that edge, in a quad that has an edge of the line at L
+        /// At L; counted from the line: kAtLine along it, kAtLine + 1 with the other edge of that quad ...
+        kAtLine,
+        /// At another end of an edge of L, with that edge, in a quad that has an edge of the line at L.  If L has one quad,
+        /// at the next vertex of the line, which has two.
+        kDown = 4,
         kTop,        ///< at that corner, with the other edge
         kDownBehind, ///< as kDown, in a quad that has no edge of the line at L
         kTopBehind   ///< as kTop, there

@@ -497,7 +497,7 @@ private:
         SectorCorner const *end() const { return behind; }
     };
     static void addOneFace(Sectors sectors, int corner, std::vector<double> &row);
-    void addOneFaceHalf(Sectors sectors, std::vector<int> const &half, int place,
+    void addOneFaceHalf(Sectors sectors, std::vector<int> const &half, int place, double ofLine,
                         std::vector<double> &row);
     std::vector<double> const &getHalfFaceWeights(int size);
 
@@ -701,8 +701,16 @@ void RefinementRules::DenseRuleMaker::addRule(FaceTags const &tags) {
             for (std::size_t j = 0; j < half.size(); ++j) {
                 row[std::size_t(half[j])] += sharp * weights[j];
             }
+            auto const isOfHalf = [](QuadLineRow const &beside) {
+                return beside.row.mask && beside.isOfHalf;
+            };
             if (hasOneFace) {
-                addOneFaceHalf({sectors, sector}, half, int(place), row);
+                double ofLine = 0;
+                for (QuadLineRow const &beside : byPath.besideLines) {
+                    ofLine =
+                        isOfHalf(beside) ? std::max(ofLine, std::min(sharp, beside.share)) : ofLine;
+                }
+                addOneFaceHalf({sectors, sector}, half, int(place), ofLine, row);
             }
             // In the place of the half face's own mask.
             auto const addHalfMask = [&](MaskRow const &mask, double share) {
@@ -716,7 +724,7 @@ void RefinementRules::DenseRuleMaker::addRule(FaceTags const &tags) {
                 addHalfMask(besideLine.row, std::min(sharp, double(besideLine.share)));
             }
             for (QuadLineRow const &beside : byPath.besideLines) {
-                if (beside.row.mask && beside.isOfHalf) {
+                if (isOfHalf(beside)) {
                     addHalfMask(beside.row, std::min(sharp, beside.share));
                 }
             }
@@ -768,17 +776,19 @@ void RefinementRules::DenseRuleMaker::addOneFace(Sectors sectors, int corner,
     addMask({mask, kind == SectorCorner::kBeforeOne, -1, -1}, corner, share, row);
 }
 
-// The corner is number \p place of half a face, whose mask has the share of its sharp side in the row.  Beside one end
-// of the line, that end's mask goes before the other's.
+// The corner is number \p place of half a face, whose mask has the share of its sharp side in the row.  Masks beside lines
+// go before these, which have what \p ofLine leaves; beside one end of the line, that end's mask goes before the other's.
 void RefinementRules::DenseRuleMaker::addOneFaceHalf(Sectors sectors, std::vector<int> const &half,
-                                                     int place, std::vector<double> &row) {
+                                                     int place, double ofLine,
+                                                     std::vector<double> &row) {
     double beside = 0;
     double farFrom = 0;
     for (SectorCorner const &sector : sectors) {
         beside += sector.kind == SectorCorner::kBesideOne ? sector.weight : 0;
         farFrom += sector.kind == SectorCorner::kFarFromOne ? sector.weight : 0;
     }
-    farFrom = std::max(0.0, farFrom - beside);
+    farFrom = std::max(0.0, farFrom - std::max(beside, ofLine));
+    beside = std::max(0.0, beside - ofLine);
     // From the corner by the end beside it and the other end to the corner next to it.
     int const places[kTrapezoid] = {place, 3 - place, place - 2, 5 - place};
     double const *const weights =
