@@ -20,13 +20,12 @@ constexpr int kOtherFaces = 4;
 constexpr int kNoVertex = 5; // of flags beside a line alone
 constexpr int kNumVertices = kNoVertex + 1;
 constexpr int kNumEndings = kDigit * kDigit;
-// Kinds of flags beside lines; 0 is of no line.  At a line there are as many as quads there, and two next to a vertex with
-// one quad; away from one four.
-constexpr int kNumNextToOne = 2;
-constexpr int kNumAt = 1 + LineFlag::kMaxQuads * (LineFlag::kMaxQuads + 1) / 2 + kNumNextToOne;
+// Kinds of flags beside lines; 0 is of no line.  At a line there are as many as quads there; away from one four, but for one
+// quad, which has none behind.
+constexpr int kNumAt = 1 + LineFlag::kMaxQuads * (LineFlag::kMaxQuads + 1) / 2;
 constexpr int kNumKindsAway = LineFlag::kNumKinds - LineFlag::kDown;
-constexpr int kMinQuadsAway = 2;
-constexpr int kNumAway = 1 + (LineFlag::kMaxQuads - kMinQuadsAway + 1) * kNumKindsAway;
+constexpr int kFirstOfTwoAway = 1 + 2;
+constexpr int kNumAway = kFirstOfTwoAway + (LineFlag::kMaxQuads - 1) * kNumKindsAway;
 
 // One more than these are flags: a path, of as many digits as there were steps, a vertex and lines; or, in the constant
 // levels, two digits, of a vertex or of a quad.
@@ -48,12 +47,11 @@ int getKind(int numFaces) {
 
 int getLine(LineFlag flag) {
     if (flag.GetRole() == LineRole::Away) {
-        return 1 + (flag.numQuads - kMinQuadsAway) * kNumKindsAway + flag.kind - LineFlag::kDown;
+        int const kind = flag.kind - LineFlag::kDown;
+        return flag.numQuads == 1 ? 1 + kind
+                                  : kFirstOfTwoAway + (flag.numQuads - 2) * kNumKindsAway + kind;
     }
-    if (flag.numQuads == 1) {
-        return flag.kind == LineFlag::kAtLine ? 1 : 2 + flag.kind - LineFlag::kDown;
-    }
-    return 1 + kNumNextToOne + flag.numQuads * (flag.numQuads - 1) / 2 + flag.kind;
+    return 1 + flag.numQuads * (flag.numQuads - 1) / 2 + flag.kind;
 }
 
 QuadFlag makeFlag(Path path) {
@@ -261,18 +259,24 @@ QuadLineRow FindQuadLineRow(int numSteps, QuadFlags flags, LineRole role) {
     bool const isBackwards = in < out;
     auto const [line, digits] = isBackwards ? in : out;
     MaskTable const &rows = getRowsBesideLines();
+    // Away from one quad flags are at a regular line, too.
+    bool const isBesideOne = role == LineRole::Away && line < kFirstOfTwoAway;
     std::size_t place = getPlaceBesideLine(numSteps, role, line, digits);
     if (role == LineRole::Away && !rows.Has(place)) {
-        auto const kind = LineFlag::Kind(LineFlag::kDown + (line - 1) % kNumKindsAway);
-        if (kind == LineFlag::kDown || kind == LineFlag::kTop) { // as of regular lines
-            place = getPlaceBesideLine(numSteps, role, getLine({kMinQuadsAway, kind}), digits);
+        int const kind = (line - 1) % 2;
+        bool const isBehind = !isBesideOne && (line - kFirstOfTwoAway) % kNumKindsAway > 1;
+        if (isBesideOne) {
+            LineFlag const atLine = {2, LineFlag::Kind(LineFlag::kAtLine + kind)};
+            place = getPlaceBesideLine(numSteps, LineRole::At, getLine(atLine), digits);
+        } else if (!isBehind) {
+            place = getPlaceBesideLine(numSteps, role, kFirstOfTwoAway + kind, digits);
         }
     }
     if (!rows.Has(place)) {
         return kNoRow;
     }
     // The E-face of an edge of the line, and what F-faces are made of it.
-    bool isAlong = role == LineRole::At && line == getLine({1, LineFlag::kDown});
+    bool isAlong = isBesideOne && line == getLine({1, LineFlag::kDown});
     for (int numQuads = 1; numQuads <= LineFlag::kMaxQuads && role == LineRole::At; ++numQuads) {
         isAlong = isAlong || line == getLine({numQuads, LineFlag::kAtLine});
     }

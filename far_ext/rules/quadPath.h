@@ -61,9 +61,7 @@ struct LineFlag {
     int numQuads; ///< at L
     Kind kind;
 
-    LineRole GetRole() const {
-        return kind < kDown || numQuads == 1 ? LineRole::At : LineRole::Away;
-    }
+    LineRole GetRole() const { return kind < kDown ? LineRole::At : LineRole::Away; }
 };
 
 /// The flag at a vertex that has \p numFaces faces, all of them quads, before the first step.

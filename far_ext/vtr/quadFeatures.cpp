@@ -67,8 +67,7 @@ private:
     void addSide(Index vert, int begin, int numFaces, LineSharpness sharpness);
     void addOtherEnd(Index corner, Index face, Index edge, LineFlag::Kind down, int numQuads,
                      LineSharpness sharpness);
-    LineSharpness findBesideOne(Index corner, Index face, bool isOut,
-                                LineSharpness sharpness) const;
+    float addBesideOne(Index corner, Index face, bool isOut, LineSharpness sharpness);
     bool isOnQuads(Index vert, int begin, int numFaces) const;
     Index getFaceOf(Index vert, int i) const {
         Far::ConstIndexArray const faces = _level.GetVertexFaces(vert);
@@ -117,16 +116,20 @@ bool QuadLineFinder::isOnQuads(Index vert, int begin, int numFaces) const {
     return true;
 }
 
-// Each corner is beside one line of a role at most.
+// Of two lines in one role the one with the larger share has it.
 void QuadLineFinder::add(Index corner, LineFlag out, LineFlag in, LineSharpness sharpness) {
     auto const [found, isNew] = _indices.try_emplace(corner, _found.size());
     if (isNew) {
         _found.push_back({corner, makeBaseFlags(_level, _level.faceVerts[corner])});
     }
     QuadFlags &flags = _found[found->second].flags;
+    LineSharpness &ofRole = flags.lines[int(out.GetRole())];
+    if (ofRole.GetShare() > sharpness.GetShare()) {
+        return;
+    }
     flags.out = AddLineFlag(flags.out, out);
     flags.in = AddLineFlag(flags.in, in);
-    flags.lines[int(out.GetRole())] = sharpness;
+    ofRole = sharpness;
 }
 
 // Face i of a vertex lies between its edges i and i + 1.
@@ -161,18 +164,10 @@ void QuadLineFinder::addSide(Index vert, int begin, int numFaces, LineSharpness 
         Index const corner = _level.GetVertexCorner(_level.vertFirstFace[vert] +
                                                     (begin + i) % _level.GetNumVertexFaces(vert));
         LineSharpness own = sharpness;
-        LineSharpness const one =
-            numFaces == 2 ? findBesideOne(corner, face, i == 0, sharpness) : LineSharpness{0, 0};
-        own.cross = std::max(own.cross, one.line);
-        if (one.GetShare() > own.GetShare()) {
-            LineFlag const along = {1, LineFlag::kDown};
-            LineFlag const other = {1, LineFlag::kTop};
-            add(corner, i == 0 ? along : other, i == 0 ? other : along,
-                {one.line, one.cross + own.GetShare()});
-        } else {
-            add(corner, makeFlag(2 * i), makeFlag(2 * i + 1),
-                {own.line, own.cross + one.GetShare()});
+        if (numFaces == 2) {
+            own.cross = std::max(own.cross, addBesideOne(corner, face, i == 0, sharpness));
         }
+        add(corner, makeFlag(2 * i), makeFlag(2 * i + 1), own);
         // The other ends of the edges of this face but those of the line.
         bool const isAtLine = i == 0 || i == numFaces - 1;
         LineFlag::Kind const down = isAtLine ? LineFlag::kDown : LineFlag::kDownBehind;
@@ -186,11 +181,9 @@ void QuadLineFinder::addSide(Index vert, int begin, int numFaces, LineSharpness 
     }
 }
 
-// The corner at a line, in a quad that the next vertex there may have alone on its side: how sharp the line is at that
-// vertex, too; 0 where it has other faces or no line.  That vertex is at the other end of the edge that begins at the
-// corner, or of the one that ends there.
-LineSharpness QuadLineFinder::findBesideOne(Index corner, Index face, bool isOut,
-                                            LineSharpness sharpness) const {
+// The corner in a quad that a vertex next to it on the line has alone: with its edge that begins there, or with the one
+// that ends there.  Returns how sharp the line is at that vertex; 0 where it has other faces.
+float QuadLineFinder::addBesideOne(Index corner, Index face, bool isOut, LineSharpness sharpness) {
     Index const atOne =
         isOut ? _level.GetNextCorner(face, corner) : _level.GetPrevCorner(face, corner);
     Index const vert = _level.faceVerts[atOne];
@@ -198,8 +191,12 @@ LineSharpness QuadLineFinder::findBesideOne(Index corner, Index face, bool isOut
     SharpEdges const edges = findSharpEdges(vert);
     sharpness.line = std::min({sharpness.line, edges.sharpness[1], getSharpness(edge)});
     sharpness.cross = std::max(sharpness.cross, edges.GetCross(_level.GetVertexSharpness(vert)));
-    bool const isLine = sharpness.line > sharpness.cross && !_level.IsNonManifold(vert);
-    return isLine ? sharpness : LineSharpness{0, 0};
+    if (!(sharpness.line > sharpness.cross) || _level.IsNonManifold(vert)) {
+        return 0;
+    }
+    add(corner, {1, isOut ? LineFlag::kDown : LineFlag::kTop},
+        {1, isOut ? LineFlag::kTop : LineFlag::kDown}, sharpness);
+    return sharpness.line;
 }
 
 // The corner at the other end of an edge from the line: not where its other edge leads to a line that is as sharp, or it is

@@ -701,11 +701,15 @@ void RefinementRules::DenseRuleMaker::addRule(FaceTags const &tags) {
             for (std::size_t j = 0; j < half.size(); ++j) {
                 row[std::size_t(half[j])] += sharp * weights[j];
             }
-            double ofLine = 0;
-            for (QuadLineRow const &beside : byPath.besideLines) {
-                ofLine += beside.row.mask && beside.isOfHalf ? std::min(sharp, beside.share) : 0;
-            }
+            auto const isOfHalf = [](QuadLineRow const &beside) {
+                return beside.row.mask && beside.isOfHalf;
+            };
             if (hasOneFace) {
+                double ofLine = 0;
+                for (QuadLineRow const &beside : byPath.besideLines) {
+                    ofLine =
+                        isOfHalf(beside) ? std::max(ofLine, std::min(sharp, beside.share)) : ofLine;
+                }
                 addOneFaceHalf({sectors, sector}, half, int(place), ofLine, row);
             }
             // In the place of the half face's own mask.
@@ -720,7 +724,7 @@ void RefinementRules::DenseRuleMaker::addRule(FaceTags const &tags) {
                 addHalfMask(besideLine.row, std::min(sharp, double(besideLine.share)));
             }
             for (QuadLineRow const &beside : byPath.besideLines) {
-                if (beside.row.mask && beside.isOfHalf) {
+                if (isOfHalf(beside)) {
                     addHalfMask(beside.row, std::min(sharp, beside.share));
                 }
             }

@@ -24,7 +24,9 @@ namespace {
 
 using FarExt::FaceMask;
 using FarExt::internal::Level;
+using FarExt::internal::LineRole;
 using FarExt::internal::QuadCorner;
+using FarExt::internal::QuadLineRow;
 
 constexpr int kSidesOfQuad = 4;
 constexpr int kQuadsOfStrip = 2;    // at a vertex of the line
@@ -107,22 +109,28 @@ SearchRows makeQuadLineStart() {
 std::vector<CornerRow> findQuadLineRows(Level const &level) {
     std::vector<CornerRow> result(std::size_t(level.numCorners));
     for (QuadCorner const &quad : level.quadCorners) {
-        for (FarExt::internal::LineRole const role : FarExt::internal::kLineRoles) {
-            auto const found =
+        if (!quad.flags.HasLine()) {
+            continue;
+        }
+        QuadLineRow ofCorner = {FarExt::internal::kNoMaskRow, false, 0};
+        for (LineRole const role : FarExt::internal::kLineRoles) {
+            QuadLineRow const ofRole =
                 FarExt::internal::FindQuadLineRow(level.numHexagonalSteps, quad.flags, role);
-            if (found.share == 0) {
-                continue;
-            }
-            CornerRow &row = result[std::size_t(quad.corner)];
-            int const face = level.FindFaceOfCorner(quad.corner);
-            int const local = quad.corner - level.faceFirstCorner[std::size_t(face)];
-            row.ofFVertex = found.row.position;
-            row.ofVertex = found.row.vertexWeight < 0 ? CornerRow::kNone : found.row.position;
-            if (found.isOfHalf) {
-                row.SetPlacesInHalf(level, face, local, found.row.isBackwards);
-            } else {
-                row.SetPlaces(local, level.GetFaceSize(face), found.row.isBackwards);
-            }
+            ofCorner = ofRole.share > 0 ? ofRole : ofCorner;
+        }
+        auto const [found, isHalf, share] = ofCorner;
+        if (share == 0) {
+            continue;
+        }
+        CornerRow &row = result[std::size_t(quad.corner)];
+        int const face = level.FindFaceOfCorner(quad.corner);
+        int const local = quad.corner - level.faceFirstCorner[std::size_t(face)];
+        row.ofFVertex = found.position;
+        row.ofVertex = found.vertexWeight < 0 ? CornerRow::kNone : found.position;
+        if (isHalf) {
+            row.SetPlacesInHalf(level, face, local, found.isBackwards);
+        } else {
+            row.SetPlaces(local, level.GetFaceSize(face), found.isBackwards);
         }
     }
     return result;

@@ -124,8 +124,12 @@ private:
             };
             Side const corner = side[i];
             Face &face = _mesh.faces[std::size_t(corner.face)];
-            face.linesOut[std::size_t(corner.place)].at = pathAt(2 * i);
-            face.linesIn[std::size_t(corner.place)].at = pathAt(2 * i + 1);
+            LinePath out = pathAt(2 * i);
+            LinePath in = pathAt(2 * i + 1);
+            out.cross = in.cross =
+                std::max(cross, count == 2 ? beginBesideOne(corner, i == 0, line, cross) : 0);
+            face.linesOut[std::size_t(corner.place)].at = out;
+            face.linesIn[std::size_t(corner.place)].at = in;
             bool const hasLine = i == 0 || i + 1 == count;
             if (i > 0) {
                 beginOtherEnd(nextSide(_mesh, corner), false, count, hasLine, line, cross);
@@ -136,10 +140,40 @@ private:
         }
     }
 
+    /// A corner at the line whose next vertex along the line, which the edge from the corner leads to if \p isOut, has its face
+    /// alone on this side.  Returns how sharp the line goes on there, 0 if it has others.
+    float beginBesideOne(Side corner, bool isOut, float line, float cross) {
+        Side const next = isOut ? nextSide(_mesh, corner) : previousSide(_mesh, corner);
+        int const v = _mesh.GetStart(next);
+        TaggedMesh::Vertex const &vertex = _mesh.vertices[std::size_t(v)];
+        EdgesAround const around = edgesAround(_mesh, v);
+        Edge const &other =
+            _mesh.edges[std::size_t(edgeFrom(isOut ? next : previousSide(_mesh, next)))];
+        line = std::min({line, around.GetSharpness(1), other.sharpness});
+        cross = std::max({cross, around.GetSharpness(2), vertex.sharpness});
+        if (line <= cross || vertex.isNonManifold) {
+            return 0;
+        }
+        LinePath const along{"1v", "", line, cross};
+        LinePath const across{"1t", "", line, cross};
+        set(corner, isOut ? along : across, isOut ? across : along);
+        return line;
+    }
+
+    /// Of two lines in the same role the one with the larger share.
+    void set(Side corner, LinePath const &out, LinePath const &in) {
+        Face &face = _mesh.faces[std::size_t(corner.face)];
+        LinePath &ofOut = face.linesOut[std::size_t(corner.place)].away;
+        if (ofOut.GetShare() <= out.GetShare()) {
+            ofOut = out;
+            face.linesIn[std::size_t(corner.place)].away = in;
+        }
+    }
+
     /// \param isOut  whether the edge from this corner leads down to the line, else the edge to it does
     void beginOtherEnd(Side corner, bool isOut, std::size_t count, bool hasLine, float line,
                        float cross) {
-        Face &face = _mesh.faces[std::size_t(corner.face)];
+        Face const &face = _mesh.faces[std::size_t(corner.face)];
         float own = 0;
         if (!hasFourQuads(_mesh, face.vertices[std::size_t(corner.place)], own) ||
             isInfinite(own)) {
@@ -155,8 +189,7 @@ private:
         std::string const number = std::to_string(count);
         LinePath const down{number + (hasLine ? 'v' : 'V'), "", line, cross};
         LinePath const top{number + (hasLine ? 't' : 'T'), "", line, cross};
-        face.linesOut[std::size_t(corner.place)].away = isOut ? down : top;
-        face.linesIn[std::size_t(corner.place)].away = isOut ? top : down;
+        set(corner, isOut ? down : top, isOut ? top : down);
     }
 
     TaggedMesh &_mesh;
@@ -207,14 +240,18 @@ std::optional<LineRule> findRule(LinePath const &out, LinePath const &in) {
     bool const isMirrored = isLess(in, out);
     LinePath const &path = isMirrored ? in : out;
     auto found = rows.find(path.flag + ":" + path.steps);
-    if (found == rows.end() && (path.flag[1] == 'v' || path.flag[1] == 't')) {
-        found = rows.find(std::string{'2', path.flag[1]} + ":" + path.steps);
+    bool const isFirst = path.flag[1] == 'v';
+    if (found == rows.end() && (isFirst || path.flag[1] == 't')) {
+        // As of regular lines; beside a vertex with one quad these pass the corner, too.
+        char const ofTwo = path.flag[0] != '1' ? path.flag[1] : isFirst ? 'a' : 'b';
+        found = rows.find(std::string{'2', ofTwo} + ":" + path.steps);
     }
     double const share = double(path.GetShare());
     if (found == rows.end() || share == 0) {
         return {};
     }
-    bool const isOfHalf = path.flag[1] == 'a' && !path.steps.empty() && path.steps[0] != '0' &&
+    bool const isAlong = path.flag[1] == 'a' || path.flag == "1v";
+    bool const isOfHalf = isAlong && !path.steps.empty() && path.steps[0] != '0' &&
                           path.steps.find_first_not_of('0', 1) == std::string::npos;
     return LineRule{found->second.weights, isMirrored, isOfHalf, found->second.weightOfPoint,
                     share};

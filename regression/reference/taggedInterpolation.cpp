@@ -446,8 +446,19 @@ private:
         Point const &otherEnd = points[corner.place == 3 ? 1 : 0];
         Point const beside = (94.5 * self + 75 * end + 34.5 * otherEnd + 52 * twin) / 256;
         Point const farFrom = (122 * self + 39.5 * end + 78 * otherEnd + 16.5 * twin) / 256;
-        double const near = found->second.before;
-        double const far = std::max(0.0, found->second.far - near); // the near end goes first
+        // Rules beside lines go first, then the near end.
+        double ofLine = 0;
+        for (LineRule const &rule : quadLineRulesOf(corner)) {
+            if (rule.isOfHalf && !rule.weights.empty()) {
+                Edge const &line = _mesh.edges[face.edges[0]];
+                double const sharp =
+                    line.sides.size() == 1 ? 1 : std::min(1.0, double(line.sharpness));
+                ofLine = std::max(ofLine, std::min(sharp, rule.share));
+            }
+        }
+        double const near = std::max(0.0, found->second.before - ofLine);
+        double const far =
+            std::max(0.0, found->second.far - std::max(double(found->second.before), ofLine));
         return near * beside + far * farFrom - (near + far) * halfPoint(face, corner.place);
     }
 
