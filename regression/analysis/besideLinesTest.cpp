@@ -89,8 +89,8 @@ TEST(BesideLines, HalfDisksOfQuads) {
         int numFaces;
         std::array<double, kNumRings> rings; // at most
     };
-    for (Row const &row : {Row{1, {0.14, 0.12, 0.15}}, Row{2, {0.11, 0.17, 0.12}},
-                           Row{3, {0.20, 0.09, 0.12}}, Row{4, {0.35, 0.10, 0.20}}}) {
+    for (Row const &row : {Row{1, {0.145, 0.135, 0.125}}, Row{2, {0.11, 0.17, 0.12}},
+                           Row{3, {0.205, 0.08, 0.08}}, Row{4, {0.33, 0.10, 0.11}}}) {
         SCOPED_TRACE(row.numFaces);
         std::vector<double> const rings =
             MeasureHalfDisk(Tiling::Quads, row.numFaces, kSmooth, kNumRings, kLevel);

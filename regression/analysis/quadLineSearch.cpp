@@ -54,8 +54,8 @@ auto const &kQuadLineTable = quadLines::kTable;
 constexpr int kNumQuadLineRows = int(std::size(kQuadLineTable));
 
 bool isOfHalf(QuadLineTableRow const &row) {
-    return row.flag == 'a' && row.path[0] == '1' &&
-           row.path[1 + std::strspn(row.path + 1, "0")] == 0;
+    bool const isAlongLine = row.flag == 'a' || (row.flag == 'v' && row.numQuads == 1);
+    return isAlongLine && row.path[0] == '1' && row.path[1 + std::strspn(row.path + 1, "0")] == 0;
 }
 int getSize(QuadLineTableRow const &row) {
     bool const isOfQuad = row.path[std::strspn(row.path, "0")] == 0;
