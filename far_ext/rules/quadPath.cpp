@@ -206,10 +206,12 @@ QuadFlags AppendToQuadFlags(QuadFlags flags, int numSteps, int outDigit, int inD
     QuadFlags result = {append(flags.out, numSteps, outDigit),
                         append(flags.in, numSteps, inDigit),
                         std::max(0.0f, flags.sharpness - 1),
+                        {},
                         {}};
     if (result.HasLine()) {
         for (LineRole const role : kLineRoles) {
-            result.lines[int(role)] = sharpnessAfterStep(flags.lines[int(role)]);
+            result.outLines[int(role)] = sharpnessAfterStep(flags.outLines[int(role)]);
+            result.inLines[int(role)] = sharpnessAfterStep(flags.inLines[int(role)]);
         }
     }
     return result;
@@ -246,7 +248,8 @@ MaskRow FindQuadRow(int numSteps, QuadFlags flags) {
 
 QuadLineRow FindQuadLineRow(int numSteps, QuadFlags flags, LineRole role) {
     constexpr QuadLineRow kNoRow = {kNoMaskRow, false, 0};
-    float const share = flags.lines[int(role)].GetShare();
+    float const share =
+        std::min(flags.outLines[int(role)].GetShare(), flags.inLines[int(role)].GetShare());
     if (flags.out == 0 || flags.in == 0 || numSteps >= kNumLineSteps || share == 0) {
         return kNoRow;
     }

@@ -94,7 +94,9 @@ struct QuadFlags {
     QuadFlag in;  ///< with the edge that ends there
     /// The sharpness of the sharpest edge there, or of the vertex itself, before the first step, less one for each step.
     float sharpness;
-    LineSharpness lines[2]; ///< by LineRole, of flags beside lines
+    /// By LineRole, of flags beside lines.
+    LineSharpness outLines[2];
+    LineSharpness inLines[2];
 
     bool HasAny() const { return out != 0 || in != 0; }
     /// Whether a flag is beside a line.
@@ -116,7 +118,7 @@ struct QuadLineRow {
     bool isOfHalf; ///< of half a hexagon on the line: four weights
     double share;  ///< 0 where there is no row
 };
-/// Finds those, of flags that both have the role.
+/// Finds those, of flags that both have the role; the share is the lesser of theirs.
 OPENSUBDIVHEX_API QuadLineRow FindQuadLineRow(int numSteps, QuadFlags flags, LineRole role);
 
 } // namespace OpenSubdivHex::FarExt::internal

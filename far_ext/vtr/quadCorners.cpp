@@ -19,7 +19,7 @@ std::size_t hash(QuadFlags const *flags, Index count) {
     constexpr std::uint64_t kFactor = 0x9e3779b97f4a7c15u; // of Fibonacci hashing
     std::uint64_t result = 0;
     for (Index i = 0; i < count; ++i) {
-        std::uint64_t words[3];
+        std::uint64_t words[5];
         static_assert(sizeof words == sizeof(QuadFlags));
         std::memcpy(words, flags + i, sizeof words);
         for (std::uint64_t const word : words) {

@@ -38,7 +38,7 @@ QuadFlags makeBaseFlags(Level const &level, Index vert) {
     if (Crease::IsInfinite(sharpness)) {
         return {};
     }
-    return {flag, flag, sharpness, {}};
+    return {flag, flag, sharpness, {}, {}};
 }
 
 // Finds the corners beside lines of a level that no step has made.
@@ -123,13 +123,13 @@ void QuadLineFinder::add(Index corner, LineFlag out, LineFlag in, LineSharpness 
         _found.push_back({corner, makeBaseFlags(_level, _level.faceVerts[corner])});
     }
     QuadFlags &flags = _found[found->second].flags;
-    LineSharpness &ofRole = flags.lines[int(out.GetRole())];
-    if (ofRole.GetShare() > sharpness.GetShare()) {
+    int const role = int(out.GetRole());
+    if (flags.outLines[role].GetShare() > sharpness.GetShare()) {
         return;
     }
     flags.out = AddLineFlag(flags.out, out);
     flags.in = AddLineFlag(flags.in, in);
-    ofRole = sharpness;
+    flags.outLines[role] = flags.inLines[role] = sharpness;
 }
 
 // Face i of a vertex lies between its edges i and i + 1.
@@ -358,30 +358,36 @@ void QuadFinder::forEachCorner(Index face, FUNCTION const &function) const {
         Index const end = _parent.GetNextCorner(_parent.edgeFaces[edge][side], start);
         QuadFlags const atStart = getParent(start);
         QuadFlags const atEnd = getParent(end);
-        auto const ofFlags = [](QuadFlag out, QuadFlag in, QuadFlags const &of) {
-            return QuadFlags{out, in, of.sharpness, {of.lines[0], of.lines[1]}};
+        // A flag with both edges of a corner, or with one of them.
+        auto const atOut = [](QuadFlags const &of) {
+            QuadFlags flags = of;
+            flags.in = of.out;
+            std::copy_n(of.outLines, 2, flags.inLines);
+            return flags;
         };
-        made[places.endFVertex] = append(ofFlags(atEnd.in, atEnd.in, atEnd), 1, 2);
-        made[places.startFVertex] = append(ofFlags(atStart.out, atStart.out, atStart), 2, 1);
+        auto const atIn = [](QuadFlags const &of) {
+            QuadFlags flags = of;
+            flags.out = of.in;
+            std::copy_n(of.inLines, 2, flags.outLines);
+            return flags;
+        };
+        QuadFlags const fromStart = atOut(atStart);
+        QuadFlags const fromEnd = atIn(atEnd);
+        made[places.endFVertex] = append(fromEnd, 1, 2);
+        made[places.startFVertex] = append(fromStart, 2, 1);
         if (isHalf) {
-            made[places.startVertex] = append(ofFlags(0, atStart.out, atStart), 3, 3);
-            made[places.endVertex] = append(ofFlags(atEnd.in, 0, atEnd), 3, 3);
+            made[places.startVertex] = append(fromStart, 3, 3);
+            made[places.startVertex].out = 0;
+            made[places.endVertex] = append(fromEnd, 3, 3);
+            made[places.endVertex].in = 0;
             continue;
         }
         Index const otherStart = _parent.GetSideCorner(edge, 1 - side);
         Index const otherEnd = _parent.GetNextCorner(_parent.edgeFaces[edge][1 - side], otherStart);
-        QuadFlags const beyond = getParent(otherEnd); // at the start, on the other side
-        QuadFlags atVertex = ofFlags(beyond.in, atStart.out, atStart);
-        atVertex.sharpness = std::max(atStart.sharpness, beyond.sharpness);
-        for (LineRole const role : kLineRoles) {
-            LineSharpness &own = atVertex.lines[int(role)];
-            LineSharpness const other = beyond.lines[int(role)];
-            bool const haveBoth = own.line > 0 && other.line > 0;
-            own = haveBoth       ? LineSharpness{std::min(own.line, other.line),
-                                           std::max(own.cross, other.cross)}
-                  : own.line > 0 ? own
-                                 : other;
-        }
+        QuadFlags atVertex = atIn(getParent(otherEnd)); // on the other side
+        atVertex.in = fromStart.in;
+        std::copy_n(fromStart.inLines, 2, atVertex.inLines);
+        atVertex.sharpness = std::max(atVertex.sharpness, atStart.sharpness);
         made[places.startVertex] = append(atVertex, 3, 3);
     }
     for (int local = 0; local < size; ++local) {

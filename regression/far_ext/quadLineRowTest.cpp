@@ -103,7 +103,7 @@ int countLineCorners(Shape const &shape, int level, LineRole role) {
     auto const refiner = CreateRefiner(shape, ReferenceMask::Smooth, kNumLineSteps, edgeOptions());
     auto const &corners = refiner->GetHierarchy().mesh.levels[std::size_t(level)].quadCorners;
     return int(std::count_if(corners.begin(), corners.end(), [role](QuadCorner const &corner) {
-        return corner.flags.lines[int(role)].GetShare() > 0;
+        return corner.flags.outLines[int(role)].GetShare() > 0;
     }));
 }
 
@@ -111,7 +111,7 @@ int countLineCorners(Shape const &shape, int level, LineRole role) {
 
 TEST(QuadLineRow, WeightsAreNotNegative) {
     for (QuadLineTableRow const &row : kQuadLineTable) {
-        SCOPED_TRACE(row.numQuads + std::string(1, row.flag) + row.path);
+        SCOPED_TRACE(std::to_string(row.numQuads) + row.flag + row.path);
         EXPECT_TRUE(row.ofVertex == kNone || row.ofVertex > 0);
         EXPECT_TRUE(
             std::all_of(row.parts, row.parts + kHexagon, [](int part) { return part >= 0; }));
@@ -127,11 +127,12 @@ TEST(QuadLineRow, LieInTheFirstRow) {
             EXPECT_EQ(countLineCorners(torus, level, role), 0);
         }
     }
-    // In the border of a grid of six by six all corners at the border count, also those at its own corners, but for two
-    // of each corner's quad, which have flags beside the corner instead.
+    // At the border of a grid: five vertices of each side have two quads, but for the corners beside those of the grid,
+    // which have flags beside the one quad there instead; and at the other ends of edges two corners each, but none in the
+    // grid's corner quads.
     Shape const grid = makeQuads();
-    EXPECT_EQ(countLineCorners(grid, 0, LineRole::At), 4 * (2 * 5 + 1) - 4 * 2);
-    EXPECT_EQ(countLineCorners(grid, 0, LineRole::Away), 4 * 2 * 4 + 4 * 2 - 4 * 2);
+    EXPECT_EQ(countLineCorners(grid, 0, LineRole::At), 4 * (2 * 5 - 2) + 4);
+    EXPECT_EQ(countLineCorners(grid, 0, LineRole::Away), 4 * (2 * 5 - 2) + 4 * 2);
     EXPECT_EQ(countLineCorners(grid, kNumLineSteps, LineRole::At), 0);
 }
 

@@ -246,7 +246,7 @@ std::optional<LineRule> findRule(LinePath const &out, LinePath const &in) {
         char const ofTwo = path.flag[0] != '1' ? path.flag[1] : isFirst ? 'a' : 'b';
         found = rows.find(std::string{'2', ofTwo} + ":" + path.steps);
     }
-    double const share = double(path.GetShare());
+    double const share = double(std::min(out.GetShare(), in.GetShare()));
     if (found == rows.end() || share == 0) {
         return {};
     }
