@@ -89,7 +89,7 @@ TEST(BesideLines, HalfDisksOfQuads) {
         int numFaces;
         std::array<double, kNumRings> rings; // at most
     };
-    for (Row const &row : {Row{1, {0.145, 0.135, 0.125}}, Row{2, {0.11, 0.17, 0.12}},
+    for (Row const &row : {Row{1, {0.15, 0.135, 0.125}}, Row{2, {0.11, 0.17, 0.12}},
                            Row{3, {0.205, 0.08, 0.08}}, Row{4, {0.33, 0.10, 0.11}}}) {
         SCOPED_TRACE(row.numFaces);
         std::vector<double> const rings =
