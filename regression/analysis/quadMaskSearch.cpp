@@ -108,9 +108,12 @@ std::vector<CornerRow> findQuadRows(Level const &level, SearchRows const &rows) 
     return result;
 }
 
+// A border that is no line, since there are other masks beside lines.
 MaskedSurface makeQuadSurface(Shape const &shape, int level, SearchRows const &shipped) {
-    return MaskedSurface(shape, kSmooth, level, shipped,
-                         [&shipped](Level const &parent) { return findQuadRows(parent, shipped); });
+    return MaskedSurface(
+        shape, kSmooth, level, shipped,
+        [&shipped](Level const &parent) { return findQuadRows(parent, shipped); },
+        OpenSubdiv::Sdc::Options::VTX_BOUNDARY_NONE);
 }
 
 } // namespace

@@ -71,10 +71,11 @@ void CornerRow::SetPlacesInHalf(Level const &level, int face, int local, bool is
 }
 
 MaskedSurface::MaskedSurface(Shape const &shape, FarExt::HexSchemeOptions schemeOptions, int level,
-                             SearchRows const &rows, FindRows const &findRows)
+                             SearchRows const &rows, FindRows const &findRows,
+                             OpenSubdiv::Sdc::Options::VtxBoundaryInterpolation boundary)
     : _schemeOptions(schemeOptions), _controlPoints(getPoints(shape)), _isUsed(rows.size(), false) {
     OpenSubdiv::Sdc::Options options;
-    options.SetVtxBoundaryInterpolation(OpenSubdiv::Sdc::Options::VTX_BOUNDARY_EDGE_ONLY);
+    options.SetVtxBoundaryInterpolation(boundary);
     _refiner = FarExt::TopologyRefinerFactory::Create(ShapeDescriptor(shape).Get(), options,
                                                       {schemeOptions});
     FarExt::TopologyRefiner::UniformOptions uniform(level);

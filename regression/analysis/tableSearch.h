@@ -9,6 +9,8 @@
 #include "far_ext/topologyRefiner.h"
 #include "far_ext/vtr/level.h"
 
+#include <opensubdiv/sdc/options.h>
+
 #include <Eigen/Core>
 
 #include <array>
@@ -83,7 +85,9 @@ public:
     /// \param rows  those of the library: with them, points are where the library has them
     /// \throws std::runtime_error  where they are not, or if \p shape cannot be refined
     MaskedSurface(Shape const &shape, FarExt::HexSchemeOptions schemeOptions, int level,
-                  SearchRows const &rows, FindRows const &findRows);
+                  SearchRows const &rows, FindRows const &findRows,
+                  OpenSubdiv::Sdc::Options::VtxBoundaryInterpolation boundary =
+                      OpenSubdiv::Sdc::Options::VTX_BOUNDARY_EDGE_ONLY);
 
     FarExt::TopologyRefiner const &GetRefiner() const { return *_refiner; }
     /// The last level, by the library's masks.
