@@ -91,6 +91,7 @@ std::vector<CornerRow> findLineRows(Level const &level) {
         result[std::size_t(tag.corner)] = isFirst ? findLineRow(level, tag) : CornerRow();
         last = tag.corner;
     }
+    KeepWholeVertices(level, result);
     return result;
 }
 

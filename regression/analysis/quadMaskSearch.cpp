@@ -83,17 +83,7 @@ std::vector<CornerRow> findQuadRows(Level const &level, SearchRows const &rows) 
                           found.isBackwards);
         }
     }
-    // V' follows rows where all corners have them.
-    for (int vert = 0; vert < level.numVertices; ++vert) {
-        bool hasAll = true;
-        for (int k = level.vertFirstFace[vert]; k < level.vertFirstFace[vert + 1]; ++k) {
-            hasAll = hasAll &&
-                     result[std::size_t(level.GetVertexCorner(k))].ofVertex != CornerRow::kNone;
-        }
-        for (int k = level.vertFirstFace[vert]; k < level.vertFirstFace[vert + 1] && !hasAll; ++k) {
-            result[std::size_t(level.GetVertexCorner(k))].ofVertex = CornerRow::kNone;
-        }
-    }
+    KeepWholeVertices(level, result);
     if (level.numHexagonalSteps < 1 || level.numHexagonalSteps > kNumInQuads) {
         return result;
     }

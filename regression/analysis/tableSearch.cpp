@@ -70,6 +70,19 @@ void CornerRow::SetPlacesInHalf(Level const &level, int face, int local, bool is
     }
 }
 
+void KeepWholeVertices(Level const &level, std::vector<CornerRow> &rows) {
+    for (int vert = 0; vert < level.numVertices; ++vert) {
+        bool hasAll = true;
+        for (int k = level.vertFirstFace[vert]; k < level.vertFirstFace[vert + 1]; ++k) {
+            hasAll =
+                hasAll && rows[std::size_t(level.GetVertexCorner(k))].ofVertex != CornerRow::kNone;
+        }
+        for (int k = level.vertFirstFace[vert]; k < level.vertFirstFace[vert + 1] && !hasAll; ++k) {
+            rows[std::size_t(level.GetVertexCorner(k))].ofVertex = CornerRow::kNone;
+        }
+    }
+}
+
 MaskedSurface::MaskedSurface(Shape const &shape, FarExt::HexSchemeOptions schemeOptions, int level,
                              SearchRows const &rows, FindRows const &findRows,
                              OpenSubdiv::Sdc::Options::VtxBoundaryInterpolation boundary)

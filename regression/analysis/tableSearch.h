@@ -72,6 +72,9 @@ struct CornerRow {
                          bool isBackwards);
 };
 
+/// Leaves V' to rows only where all corners of a vertex have one.
+void KeepWholeVertices(FarExt::internal::Level const &level, std::vector<CornerRow> &rows);
+
 /// Columns that are computed at once: a position, or x, y, and the lifts of x and y.
 inline constexpr int kNumMaskColumns = 5;
 using MaskPoints = Eigen::Matrix<double, Eigen::Dynamic, kNumMaskColumns, Eigen::RowMajor>;
