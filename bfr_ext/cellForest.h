@@ -28,10 +28,9 @@ class KeptPlans;
 ///
 /// After MatchEdges() a face needs nothing of its neighbours.
 ///
-/// Points that faces share are numbered: those of the base vertices first, as these, then the inner
-/// points of edge 0 in the direction of the edge, those of edge 1, and so on.  Both sides of an edge that
-/// is not manifold, and so has come apart into one for each face, get the same polyline, but points of
-/// their own.
+/// Points that faces share are numbered: the base vertices first, in their order, then the inner points of edge 0 in the
+/// direction of the edge, then those of edge 1, and so on.  A non-manifold edge has come apart into one edge for each face:
+/// these edges get the same polyline, but each its own points.
 ///
 /// Several threads may read a forest, and SetTree() may be called by several for different faces.
 /// Arguments are not checked; std::bad_alloc passes through.
@@ -50,7 +49,7 @@ public:
 
     /// Base faces.
     int GetNumFaces() const { return int(_trees.size()); }
-    /// Sets the tree of a face, which has the vertices of that.
+    /// Sets the tree of a face, for as many vertices as the face has.
     void SetTree(Index face, CellTree tree) {
         _trees[std::size_t(face)] = std::move(tree);
         _isMatched[std::size_t(face)] = false;
@@ -58,16 +57,16 @@ public:
     /// The tree of a face.
     CellTree const &GetTree(Index face) const { return _trees[std::size_t(face)]; }
 
-    /// Sets points that an edge is to have besides those of its faces' cells, in its own direction.
+    /// Sets points that an edge has in addition to those of its faces' cells, in the direction of the edge.
     void SetEdge(Index edge, Polyline polyline) { _edges[std::size_t(edge)] = std::move(polyline); }
-    /// \brief Finds the polylines of all edges, each with the points that the trees of its faces have
-    /// there, after a tree or an edge was set.  A tree with another number of vertices than its face has no
-    /// points there.
+    /// \brief Finds the polylines of all edges: each gets the points that the trees of its faces have on the edge.
+    ///
+    /// Call it after SetTree() and SetEdge().  A tree for another number of vertices than its face has is ignored.
     void MatchEdges();
-    /// \brief Whether a face has a tree with as many vertices, and the polylines of its edges have all
-    /// points of that, as they have after MatchEdges(): else its tessellation is invalid.
+    /// \brief Whether the face has a tessellation: its tree is for as many vertices, and the polylines of its edges have all
+    /// points of the tree.  It is true after MatchEdges().
     bool IsMatched(Index face) const;
-    /// The polyline of an edge, in its own direction.
+    /// The polyline of an edge, in the direction of the edge.
     Polyline const &GetPolyline(Index edge) const { return _polylines[std::size_t(edge)]; }
     /// The polylines of the edges of a face, in the direction of the face.
     std::vector<Polyline> GetFacePolylines(Index face) const;

@@ -32,10 +32,9 @@ class TessellationData;
 /// level, has their points in its own sides.  So neighbours that take the same level, or Polyline, for their edge fit
 /// without gaps, whatever their other levels and trees.
 ///
-/// A PatchStream cuts faces that are too large for its memory into *sections*, whose tessellations are
-/// parts of that of the face: with the same places and facets, but that hexagons which two sections have
-/// come in two halves, as those that two faces have.  A section is a polygon in the plane of the
-/// face, and fits to others as a face does to its neighbours.
+/// A PatchStream cuts a face that is too large for its memory into *sections*: polygons in the plane of the face, which fit
+/// together as faces do.  The tessellation of a section is a part of the face's, with the same (u, v) and facets.  The one
+/// exception: a hexagon between two sections comes as two halves, as hexagons between two faces do.
 ///
 /// Nothing is changed after construction: several threads may use it.  Copies share what it has.  std::bad_alloc
 /// passes through.
@@ -44,7 +43,7 @@ public:
     /// The last level, of the inside and of edges.
     static constexpr int kLastLevel = CellTree::kLastLevel;
 
-    /// \brief How facets and arrays are to be, as in Bfr.
+    /// \brief The size of facets, and strides, as in Bfr.
     class Options {
     public:
         /// Triangles, without gaps.
@@ -59,15 +58,15 @@ public:
         }
         /// The size that was set.
         int GetFacetSize() const { return _facetSize; }
-        /// Sets how far it is from one facet to the next, in indices; 0: the size of facets.  Of no
-        /// matter for polygons.
+        /// Sets the distance from one facet to the next, in indices; 0: the size of facets.  Ignored for
+        /// polygons.
         Options &SetFacetStride(int stride) {
             _facetStride = stride;
             return *this;
         }
         /// The distance that was set.
         int GetFacetStride() const { return _facetStride; }
-        /// Sets how far it is from one pair of coordinates to the next; 0: 2.
+        /// Sets the distance from one pair of coordinates to the next, in numbers; 0: 2.
         Options &SetCoordStride(int stride) {
             _coordStride = stride;
             return *this;
@@ -83,16 +82,16 @@ public:
 
     /// \brief One level everywhere, 0 ... kLastLevel.
     ///
-    /// The tessellation is invalid for other levels, for an invalid parameterization, for a facet size
-    /// that is none of the three, for strides that are less than what they are between, and for so many
-    /// cells that as triangles they have more than 2^31 - 1 indices.
+    /// The tessellation is invalid for other levels, for an invalid parameterization, for another facet size than 0, 3 and
+    /// 4, for a stride less than the size of what it separates, and for cells whose triangles would have more than 2^31 - 1
+    /// indices.
     LevelTessellation(Parameterization const &parameterization, int level,
                       Options options = Options());
     /// \brief Levels of the edges and of the inside.
     ///
-    /// \param numLevels  1: that of all; the number of edges: those of edges 0 ..., edge i from vertex
-    ///                   i to the next, and inside the largest of them; one more: those of edges, then
-    ///                   that of the inside
+    /// \param numLevels  1: one level for all; the number of edges: a level for each edge, edge i running from vertex i to
+    ///                   the next, and for the inside the largest of them; one more: a level for each edge, then the
+    ///                   level of the inside
     LevelTessellation(Parameterization const &parameterization, int numLevels, int const levels[],
                       Options options = Options());
 
@@ -100,11 +99,11 @@ public:
     ///
     /// It is invalid, too, where a polyline lacks a point that the tree has there.
     ///
-    /// \param tree     of which it keeps a copy
-    /// \param edges    what the edges are, tree.GetFaceSize() polylines in the direction of the face:
-    ///                 those of the tree (CellTree::GetEdgePolyline()), merged with the neighbour's
-    ///                 (Polyline::Merge()); null: those of the tree
-    /// \param options  how facets and arrays are to be
+    /// \param tree     is copied
+    /// \param edges    tree.GetFaceSize() polylines, one for each edge, in the direction of the face: that of the tree
+    ///                 (CellTree::GetEdgePolyline()), merged with the neighbour's (Polyline::Merge()); null: those of
+    ///                 the tree alone
+    /// \param options  the size of facets, and strides
     explicit LevelTessellation(CellTree const &tree, Polyline const edges[] = nullptr,
                                Options options = Options());
 

@@ -54,25 +54,24 @@ private:
 ///     });
 /// \endcode
 ///
-/// The sink gets a patch for each base face that is no hole: a tessellation and its points and, if asked for, derivatives
-/// and values of varying and face-varying data.
+/// The sink gets a *patch* for each base face that is no hole: a tessellation, its points and, if asked for, derivatives
+/// and values of varying and face-varying data.  (Patches of a Far::PatchTable are something else.)
 ///
 /// **Memory** is the sum of Options::SetMaxMemory() and the cache of the factory, with 8 bytes for each corner and vertex of
 /// the mesh.
 ///
-/// A face whose tessellation would take more memory than a fourth of that has a patch for each of its
-/// *sections* (LevelTessellation::GetSection()).  Neighbouring sections share the points on their boundaries, as
-/// faces do, and the points are those that the face has as a whole, to the bit; so are the facets, but that
-/// of polygons, hexagons between two sections come in two halves.
+/// A face whose tessellation would take more than a fourth of SetMaxMemory() has a patch for each of its *sections*
+/// (LevelTessellation::GetSection()).  Neighbouring sections share the points on their boundaries, as faces do.  Points have
+/// the bits that they have in the whole face.  Facets are the same, too, except that a hexagon between two sections comes as
+/// two halves where facets are polygons.
 ///
-///  - Two patches that share an edge have the same points there, to the bit, as those of
-///    Surface::Evaluate() of a tessellation have, with the exceptions said there.
-///  - With a CellForest, patches have the tessellations of its trees: each is made with its patch and
-///    forgotten with it.
-///  - A patch depends on its face and the options alone, to the bit: not on the number of threads, nor on
-///    which others the call makes.  So processes may share the faces of a mesh, on machines of which all have
-///    AVX2 and FMA, or AVX-512, and a build that uses them, or none has: products are fused with sums there.
-///  - Points inside of a face are those of Surface::Evaluate() up to rounding.
+///  - Two patches that share an edge have the same points on it, to the bit.  Exceptions are those of Surface::Evaluate() of a
+///    tessellation.
+///  - With a CellForest, patches have the tessellations of its trees: each is made with its patch and forgotten with it.
+///  - A patch depends on its face and the options alone, to the bit: not on the number of threads, nor on the other faces of
+///    the call.  So several processes may share the faces of a mesh.  Their machines and builds must all use AVX-512 or AVX2
+///    with FMA, or all use neither: these fuse products with sums.
+///  - Points inside a face are those of Surface::Evaluate(), except for rounding.
 ///
 /// Several threads may call Run() of one stream at once.  std::bad_alloc passes through.
 template <typename REAL>
@@ -97,12 +96,12 @@ public:
         REAL const *const *values = nullptr;
     };
 
-    /// \brief Values that patches have besides points: of varying or face-varying data.
+    /// \brief Values that patches have in addition to points: varying or face-varying data.
     struct Values {
         /// No channel: varying data.
         static constexpr int kVarying = -1;
 
-        REAL const *values;     ///< of GetLevel(), by vertex or by value of the channel
+        REAL const *values; ///< of SurfaceFactory::GetLevel(), by vertex or by value of the channel
         PointDescriptor desc;   ///< their size, and the distance from one to the next
         int channel = kVarying; ///< of face-varying data
     };
@@ -139,18 +138,17 @@ public:
         /// Whether patches have derivatives.
         bool HasDerivatives() const { return _hasDerivatives; }
 
-        /// \brief Sets how many bytes tessellations take at a time, over all threads, with what it takes to
-        /// make them.
+        /// \brief Sets the bytes that all tessellations of a time take, over all threads, and making them.
         ///
-        /// Patches with the same levels share one.  Where not all of them fit, those patches come one
-        /// behind the other, and few tessellations are made twice.
+        /// Patches with the same levels share a tessellation.  If not all tessellations fit, patches that share one are made
+        /// in succession, so that few tessellations are made twice.
         ///
-        /// A thread has one patch at a time, and its points.  Making a tessellation takes about 300 bytes a
-        /// point: at most a fourth of the bytes that are set, or 3 megabytes where these are more (4 with
-        /// derivatives).  Faces that take more come in sections.  A single cell is never cut: it has all
-        /// points that finer edges of the face, or cells beside it, have on its sides.
+        /// A thread has one patch, with its points, at a time.  Making a tessellation takes about 300 bytes a point: a face
+        /// may take a fourth of the bytes that are set, or 3 megabytes if these are more (4 with derivatives).  Faces that
+        /// take more come in sections.  A single cell is never cut: it has all points that finer edges of the face, or cells
+        /// beside it, have on its sides.
         ///
-        /// Besides there is what all faces that look alike have in common, in the cache, which has a bound of its own (SurfaceFactoryCache).
+        /// The types of faces are not counted: they are in the cache, which has a bound of its own (SurfaceFactoryCache).
         Options &SetMaxMemory(std::size_t bytes) {
             _maxMemory = bytes;
             return *this;
@@ -188,19 +186,18 @@ public:
     /// \param meshPoints     of SurfaceFactory::GetLevel()
     /// \param meshPointDesc  their size, and the distance from one to the next
     /// \param sink           takes patches
-    /// \param status         where Run() gives false without a failure, it is Ok: the sink ended it
-    /// \return               whether all patches were handed out.  Failures are, before any patch is:
-    ///                       InvalidArgument for a level or options that LevelTessellation does not have,
-    ///                       or a forest of another refiner or that is not matched;
-    ///                       Unsupported for a face without a surface (SurfaceFactory) that is no hole;
-    ///                       and on the way, Unsupported for a vertex without a limit stencil
+    /// \param status         Ok if the sink ended the stream
+    /// \return               whether all patches were handed out.  Failures before the first patch: InvalidArgument for a
+    ///                       level or options that LevelTessellation refuses, or for a forest that is not matched or is of
+    ///                       another refiner; Unsupported for a face without a surface (SurfaceFactory) that is no hole.
+    ///                       A failure on the way: Unsupported for a vertex without a limit stencil
     bool Run(REAL const meshPoints[], PointDescriptor const &meshPointDesc, Sink const &sink,
              FarExt::CallStatus *status = nullptr) const {
         return Run(meshPoints, meshPointDesc, 0, _factory.GetNumFaces(), sink, status);
     }
     /// \brief Overload for faces \p beginFace ... \p endFace - 1: the share of a process.
     ///
-    /// \return  false with InvalidArgument, too, for a range that is not one of faces
+    /// \return  false, with InvalidArgument, for a range beyond the faces, too
     bool Run(REAL const meshPoints[], PointDescriptor const &meshPointDesc, Index beginFace,
              Index endFace, Sink const &sink, FarExt::CallStatus *status = nullptr) const {
         return Run(meshPoints, meshPointDesc, {}, beginFace, endFace, sink, status);
@@ -208,14 +205,14 @@ public:
     /// \brief Overload with further values.
     ///
     /// \param values  what patches have as Patch::values, in this order
-    /// \return        false with InvalidArgument, too, for a channel that the mesh has not
+    /// \return        false, with InvalidArgument, for a channel that the mesh does not have, too
     bool Run(REAL const meshPoints[], PointDescriptor const &meshPointDesc,
              std::vector<Values> const &values, Index beginFace, Index endFace, Sink const &sink,
              FarExt::CallStatus *status = nullptr) const;
 
-    /// How many patches a face has, which is in range and has valid levels or trees: 1, or its sections.
+    /// The number of patches of a face: 1, or its sections.  The face is in range, and its levels or tree are valid.
     int GetNumSections(Index face) const;
-    /// The tessellation of such a face as a whole, whatever memory that takes.
+    /// The tessellation of such a face as a whole, however much memory it takes.
     LevelTessellation MakeTessellation(Index face) const;
     /// The tessellation of a section, 0 ... GetNumSections(face) - 1, as the patches of the face have it.
     LevelTessellation MakeTessellation(Index face, int section) const;
@@ -230,16 +227,16 @@ public:
 
     /// \brief The sections of a face, as polygons in it.
     ///
-    /// A *corner* is a vertex of one of these, in the order of the boundary of the section's tessellation
-    /// (LevelTessellation::GetVertexPlace()); where sections meet, corners of theirs have the same vertex.
+    /// A *corner* is a vertex of one of these polygons, in the order of the boundary of the section's tessellation
+    /// (LevelTessellation::GetVertexPlace()).  Where sections meet, their corners have the same vertex.
     struct SectionPolygons {
         std::vector<int> firstCorners; ///< by section; then their end
         std::vector<int> vertices;     ///< by corner
-        /// By vertex, on which edge of the face it lies, a vertex of the face on the one that begins there; -1:
-        /// inside.
+        /// By vertex: the edge of the face on which it lies, for a vertex of the face the edge that begins there; -1: inside
+        /// the face.
         std::vector<int> edges;
-        /// By vertex on an edge, which of the points is there that LevelTessellation::GetEdgeCoords() of the whole
-        /// face would have; -1: that of the face's vertex.
+        /// By vertex on an edge: the number of its point among those of LevelTessellation::GetEdgeCoords() of the whole
+        /// face; -1: it is the vertex of the face.
         std::vector<int> edgePoints;
     };
     /// The sections of a face with more than one (GetNumSections()); empty for other faces.

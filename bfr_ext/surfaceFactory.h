@@ -43,11 +43,11 @@ class TypeCache;
 /// near, it grows by some kilobytes for it and for each type of cell that evaluation goes through.  It also keeps the
 /// weights of evaluated tessellations, for types of faces or of cells.
 ///
-/// **Memory** is bounded by what the constructor is told, with what factories keep of faces.  When half of it is taken, the cache forgets all types and finds
-/// again those that are asked for: results keep their bits.  The other half is for the types before, which surfaces that
-/// have them keep until they are initialised again or go.  GetMemory() exceeds the bound where surfaces of several such
-/// generations live at once, or a single one needs more.  If a model has more types than there is memory for, they
-/// are found again in each frame: in some milliseconds each.
+/// **Memory**, with what factories keep of faces, is bounded by the constructor's argument.  When half of it is taken, the
+/// cache forgets all types, and finds those that are asked for again: results keep their bits.  The other half is for the
+/// generation of types before: surfaces keep their type until they are initialised again or destroyed.  GetMemory() exceeds
+/// the bound if surfaces of several generations live at once, or if one generation needs more.  If a model has more types
+/// than memory holds, types are found again in each frame, in some milliseconds each.
 ///
 /// Surfaces keep what they need of the cache, so that it may go before them.
 class OPENSUBDIVHEX_API SurfaceFactoryCache {
@@ -193,6 +193,23 @@ public:
     /// Face-varying channels.
     int GetNumFVarChannels() const { return _refiner.GetNumFVarChannels(); }
 
+    /// \brief Finds the base face, and (u, v) in it, of a place on the control mesh.
+    ///
+    /// Behind FarExt::FirstStep::Truncate this leads to the surface level; without a first step the place itself is returned.
+    /// A truncation cuts a third off each end of an edge.  What is left of a face of level 0 becomes its F-face, and each corner a
+    /// part of the V-face of its vertex.  Triangles are mapped to triangles: from edges to the centre or, in a corner, the vertex.
+    /// A place on an edge is the same point of the surface from both faces.  A vertex is its V-vertex, or the centre of its V-face.
+    ///
+    /// \param controlFace  face of level 0
+    /// \param controlUv    u and v in it, as in Bfr::Parameterization; inside the face
+    /// \param face         gets the base face, which may be a hole
+    /// \param uv           gets u and v in it
+    /// \return             false, with nothing written: InvalidArgument for a face out of range, or for a refiner that refined
+    ///                     again behind a first step; Unsupported behind FarExt::FirstStep::TriHex
+    template <typename REAL>
+    bool FindSurfacePlace(Index controlFace, REAL const controlUv[2], Index *face, REAL uv[2],
+                          FarExt::CallStatus *status = nullptr) const;
+
     /// \brief Whether a face has a surface.  False is no failure: an error callback (FarExt::SetErrorCallback()) is not called.
     ///
     /// \param status  the reason:
@@ -280,7 +297,7 @@ public:
     }
     /// @}
 
-    /// \brief Makes any of these, without telling an error callback where the face has none.
+    /// \brief Makes a surface of any kind of data, without calling an error callback if the face has none.
     ///
     /// \param face           whose surface it is
     /// \param interpolation  how the data are refined

@@ -7,9 +7,11 @@
 #include "far_ext/vtr/hierarchy.h"
 #include "far_ext/vtr/parallel.h"
 #include "far_ext/vtr/pi.h"
+#include "far_ext/vtr/report.h"
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -554,16 +556,19 @@ int View::FindLevels(Surface<REAL> const &surface, REAL const controlPoints[],
 template <typename REAL>
 CellForest View::MakeForest(SurfaceFactory const &factory, REAL const meshPoints[],
                             typename Surface<REAL>::PointDescriptor const &pointDesc,
-                            CellForest const *previous, Counts *counts) const {
-    return makeForest(factory, nullptr, meshPoints, pointDesc.stride, previous, counts);
+                            CellForest const *previous, Counts *counts,
+                            FarExt::CallStatus *status) const {
+    return makeForest(factory, nullptr, meshPoints, pointDesc.stride, previous, counts, status);
 }
 
 template <typename REAL>
 CellForest View::MakeForest(ViewBounds &bounds, REAL const meshPoints[],
                             typename Surface<REAL>::PointDescriptor const &pointDesc,
-                            CellForest const *previous, Counts *counts) const {
+                            CellForest const *previous, Counts *counts,
+                            FarExt::CallStatus *status) const {
     bounds.setPoints(meshPoints, pointDesc.stride);
-    return makeForest(bounds.GetFactory(), &bounds, meshPoints, pointDesc.stride, previous, counts);
+    return makeForest(bounds.GetFactory(), &bounds, meshPoints, pointDesc.stride, previous, counts,
+                      status);
 }
 
 // The surface of one face after the other, with its control points.
@@ -604,7 +609,8 @@ private:
 template <typename REAL>
 CellForest View::makeForest(SurfaceFactory const &factory, ViewBounds *bounds,
                             REAL const *meshPoints, std::ptrdiff_t stride,
-                            CellForest const *previous, Counts *counts) const {
+                            CellForest const *previous, Counts *counts,
+                            FarExt::CallStatus *status) const {
     FarExt::SurfaceFaces const &faces = factory.GetFaces();
     // Diagonals between surface faces are infinitely sharp.
     auto const isInfSharp = [&](Index edge) {
@@ -620,6 +626,7 @@ CellForest View::makeForest(SurfaceFactory const &factory, ViewBounds *bounds,
         FaceSurface<REAL> surface;
         internal::FaceMeasures measures;
     };
+    std::atomic<Index> firstWithout = forest.GetNumFaces(); // without a surface
     constexpr Index kFacesOfRange = 16;
     FarExt::internal::ParallelForRange(
         forest.GetNumFaces(),
@@ -632,6 +639,10 @@ CellForest View::makeForest(SurfaceFactory const &factory, ViewBounds *bounds,
                 internal::FaceMeasures &measures =
                     bounds ? bounds->_measures->faces[std::size_t(face)] : state.measures;
                 if (measures.cells.empty() && !state.surface.Init(face)) {
+                    Index first = firstWithout;
+                    while (!faces.IsHole(face) && face < first &&
+                           !firstWithout.compare_exchange_weak(first, face)) {
+                    }
                     continue;
                 }
                 std::size_t const memory = measures.GetMemory();
@@ -666,6 +677,16 @@ CellForest View::makeForest(SurfaceFactory const &factory, ViewBounds *bounds,
         },
         kFacesOfRange);
     forest.MatchEdges();
+    if (status && !IsValid()) {
+        *status = FarExt::internal::Failure(
+            FarExt::StatusCode::InvalidArgument,
+            "the view is invalid: its camera has no picture, or an option is out of range");
+    } else if (status) {
+        Surface<REAL> none;
+        *status = firstWithout < forest.GetNumFaces()
+                      ? factory.TryInit(firstWithout, FarExt::Interpolation::Vertex, -1, none)
+                      : FarExt::CallStatus();
+    }
     if (counts) {
         *counts = Counts();
         counts->cellsByLevel.assign(IsValid() ? std::size_t(_options.GetMaxLevel()) + 1 : 1, 0);
@@ -700,15 +721,15 @@ template int View::FindLevels(Surface<double> const &, double const[],
                               Surface<double>::PointDescriptor const &, int[]) const;
 template CellForest View::MakeForest(SurfaceFactory const &, float const[],
                                      Surface<float>::PointDescriptor const &, CellForest const *,
-                                     Counts *) const;
+                                     Counts *, FarExt::CallStatus *) const;
 template CellForest View::MakeForest(ViewBounds &, float const[],
                                      Surface<float>::PointDescriptor const &, CellForest const *,
-                                     Counts *) const;
+                                     Counts *, FarExt::CallStatus *) const;
 template CellForest View::MakeForest(SurfaceFactory const &, double const[],
                                      Surface<double>::PointDescriptor const &, CellForest const *,
-                                     Counts *) const;
+                                     Counts *, FarExt::CallStatus *) const;
 template CellForest View::MakeForest(ViewBounds &, double const[],
                                      Surface<double>::PointDescriptor const &, CellForest const *,
-                                     Counts *) const;
+                                     Counts *, FarExt::CallStatus *) const;
 
 } // namespace OpenSubdivHex::BfrExt

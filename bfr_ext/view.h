@@ -155,8 +155,7 @@ public:
     /// \param controlPoints  its control points, of 3 numbers each
     /// \param pointDesc      how they lie; the first 3 numbers of each are read
     /// \param previous       the tree of the last frame, or null; of another face size it is ignored
-    /// \param visibility     null, or gets what is known of each cell; those below cells that are not
-    ///                       seen have no numbers
+    /// \param visibility     null, or gets the visibility of each cell of the tree
     template <typename REAL>
     CellTree MakeTree(Surface<REAL> const &surface, REAL const controlPoints[],
                       typename Surface<REAL>::PointDescriptor const &pointDesc,
@@ -199,21 +198,26 @@ public:
     /// \param factory     of the mesh, whose refiner the forest refers to
     /// \param meshPoints  the positions of its vertices
     /// \param pointDesc   how they lie; the first 3 numbers of each are read
-    /// \param previous    the forest of the last frame, of the same mesh, or null; where its trees are
-    ///                    others in number or of another face size, they are ignored, and so are its
-    ///                    edges if they are others in number
+    /// \param previous    the forest of the last frame, of the same mesh, or null.  Ignored are its trees if they are more or
+    ///                    fewer than faces, its edges if they are more or fewer than edges, and a tree of another face
+    ///                    size
     /// \param counts      null, or gets what was found
+    /// \param status      InvalidArgument for an invalid view; else the reason of SurfaceFactory::FaceHasLimitSurface() for the
+    ///                    first face without a surface that is no hole.  Such faces are not refined, and a PatchStream
+    ///                    refuses them; all others are as without a failure.  An error callback is not called
     template <typename REAL>
     CellForest MakeForest(SurfaceFactory const &factory, REAL const meshPoints[],
                           typename Surface<REAL>::PointDescriptor const &pointDesc,
-                          CellForest const *previous = nullptr, Counts *counts = nullptr) const;
+                          CellForest const *previous = nullptr, Counts *counts = nullptr,
+                          FarExt::CallStatus *status = nullptr) const;
     /// \brief Overload that uses, and keeps for the next view, how flat cells are.
     ///
     /// \param bounds  of the mesh
     template <typename REAL>
     CellForest MakeForest(ViewBounds &bounds, REAL const meshPoints[],
                           typename Surface<REAL>::PointDescriptor const &pointDesc,
-                          CellForest const *previous = nullptr, Counts *counts = nullptr) const;
+                          CellForest const *previous = nullptr, Counts *counts = nullptr,
+                          FarExt::CallStatus *status = nullptr) const;
 
 private:
     template <typename REAL>
@@ -224,7 +228,8 @@ private:
                 std::vector<CellVisibility> *visibility) const;
     template <typename REAL>
     CellForest makeForest(SurfaceFactory const &factory, ViewBounds *bounds, REAL const *meshPoints,
-                          std::ptrdiff_t stride, CellForest const *previous, Counts *counts) const;
+                          std::ptrdiff_t stride, CellForest const *previous, Counts *counts,
+                          FarExt::CallStatus *status) const;
 
     Camera _camera;
     Options _options;

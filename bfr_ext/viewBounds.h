@@ -28,10 +28,9 @@ struct MeshMeasures;
 /// positions that they were measured for; where positions have changed, they are measured again.  Forests are the same, to
 /// the last cell, with and without.
 ///
-/// **Memory** is what Options::SetMaxMemory() says, and three doubles for each vertex of the mesh.  Each
-/// cell that a view asked for takes about 64 bytes; for culling, 72 more.  What has no room is found anew by
-/// each view.  Besides there are the tessellations of the last PatchStream of a forest, as far as that keeps
-/// them, for those of the next forest.
+/// **Memory** is Options::SetMaxMemory(), and three doubles for each vertex of the mesh.  Each cell that a view asked for
+/// takes about 64 bytes; for culling, 72 more.  Each view measures anew the cells for which there is no room.  In addition,
+/// the tessellations that the PatchStream of the last forest keeps are kept, for the next forest.
 ///
 /// One thread at a time may use it; View::MakeForest() has threads of its own.  std::bad_alloc passes
 /// through.

@@ -58,25 +58,25 @@ inline constexpr int kHalfFaceLongEdge = 0;
 /// The corners of the two halves of a hexagon that an edge of the base mesh crosses, be it a crease,
 /// a face-varying seam or neither: half 0 is on the side of the first face of the parent edge.
 inline constexpr int kHexagonHalves[2][4] = {{0, 3, 4, 5}, {3, 0, 1, 2}};
-/// \brief The place of vertex \p i of a half in a face that is cut along a diagonal from its vertex 0 to \p end, as
-/// kHexagonHalves has them for hexagons.
+/// \brief Vertex \p i of a half, as a vertex of the whole face: the face is cut along a diagonal from vertex 0 to \p end.
+/// For hexagons these are the numbers of kHexagonHalves.
 ///
-/// Half 1 has the end + 1 vertices from 0 to \p end, half 0 the others and these two; each begins with an end of the
-/// diagonal and goes on with the other.
+/// Half 1 has the vertices from 0 to \p end, half 0 has \p end, the others, and 0.  Both have the diagonal as edge 0: half 0
+/// begins with 0 and \p end, half 1 with \p end and 0.
 constexpr int GetPlaceInHalves(int half, int i, int end) {
     return half == 1 ? (i == 0 ? end : i - 1) : (i == 0 ? 0 : end + i - 1);
 }
-/// The vertices of a half, of a face of \p numVertices.
+/// The number of vertices of a half, in a face of \p numVertices.
 constexpr int GetHalfSize(int half, int numVertices, int end) {
     return half == 1 ? end + 1 : numVertices - end + 1;
 }
 /// The half that edge \p local of a face belongs to, by default of a hexagon.
 constexpr int GetHalfOfEdge(int local, int end = kDiagonalEnd) { return local < end ? 1 : 0; }
-/// Which edge of its half edge \p local of a face is: 1 or more, since the diagonal is edge 0 of each half.
+/// Edge \p local of a face, as an edge of its half: 1 or more, since the diagonal is edge 0 of each half.
 constexpr int GetEdgeInHalf(int local, int end = kDiagonalEnd) {
     return local < end ? local + 1 : local - end + 1;
 }
-/// A face of \p numCorners corners that an edge made has two halves if it is a hexagon.
+/// Whether an E-face of \p numCorners corners has two halves: it is a hexagon.
 constexpr bool HasHalves(int numCorners) { return numCorners == 6; }
 
 /// \brief The shape of a face that has a surface: a polygon, or half of one.

@@ -37,11 +37,11 @@ namespace OpenSubdivHex::FarExt {
 /// between, as with AppendLocalPointStencilTable(), give evaluators a descriptor whose offset is larger by as many elements.
 ///
 /// **Face-varying channels** have a patch for each patch of the surface, with the same s and t: bilinear ones (QUADS)
-/// or Gregory patches of the channel's values.  These are the limit of the channel as those of the surface are of
-/// its vertices: what is a seam is a boundary to both sides.  Their points are local ones, too: indices count
-/// the values of level 0 first, then come the points of CreateLocalPointFaceVaryingStencilTable().  The table has
-/// those of Gregory patches (Far::PatchTable::GetLocalPointFaceVaryingStencilTable()); of QUADS no
-/// Far::PatchTable has any.
+/// or Gregory patches of the channel's values.  Gregory patches are close to the limit of the channel, as those of the surface
+/// are to the limit surface; a seam is a boundary on both sides.  Points of channels are local points, too: indices count the
+/// values of level 0 first, then the points of CreateLocalPointFaceVaryingStencilTable().  The patch table contains the
+/// stencils of Gregory patches (Far::PatchTable::GetLocalPointFaceVaryingStencilTable()); a Far::PatchTable never contains
+/// those of QUADS.
 ///
 /// **Parameters.** Each patch is a face of its own, with the index of the patch, in the terms of
 /// Far::PatchParam and Far::PatchMap: s and t are those of the patch, from 0 to 1.
@@ -60,28 +60,25 @@ public:
         int maxIsolationLevel;
         /// \brief The coarsest level of patches; -1: maxIsolationLevel, so that all are of one level.
         ///
-        /// From there on faces are refined where \p tolerance says so or, if that is 0, those with an irregular
-        /// vertex (of other than three faces), those that are no hexagons and, up to sharpIsolationLevel,
-        /// those with something sharp.  A face is refined whole, and with it, if need be, the face beyond an
-        /// edge: so no corner of a patch lies inside of a side of another, and patches of different levels
-        /// meet as others do.
+        /// From this level on faces are refined by \p tolerance.  If \p tolerance is 0, faces are refined that are no hexagons
+        /// or have an irregular vertex (of other than three faces) and, up to sharpIsolationLevel, faces with a sharp edge or
+        /// vertex.  A face is refined as a whole, if need be with the face beyond an edge: no corner of a patch lies inside
+        /// a side of another patch, so that patches of different levels fit.
         int minIsolationLevel = -1;
-        /// Up to which level faces with something sharp are refined; -1: maxIsolationLevel.
+        /// The finest level of faces with a sharp edge or vertex; -1: maxIsolationLevel.
         int sharpIsolationLevel = -1;
-        /// \brief How close patches are to come to the limit surface where \p positions has the control
-        /// vertices, in their units; 0: as close as they do by the levels above.
+        /// \brief The largest distance of patches from the limit surface, in the units of \p positions; 0: the levels above
+        /// decide.
         ///
-        /// The distance is measured at some 20 points of each patch, at right angles to it.  Patches
-        /// of maxIsolationLevel, and those of faces that are no hexagons and no quads, which are refined up to
-        /// that, are not measured.
+        /// The distance is measured at some 20 points of each patch, at right angles to it.  Not measured are patches of
+        /// maxIsolationLevel, and those of faces that are no hexagons and no quads, which are refined up to that level.
         double tolerance = 0;
         float const *positions =
-            nullptr; ///< x, y, z of each control vertex, where there is a tolerance
-        /// \brief x, y, z of an eye, or null: the tolerance is then that of places at the distance 1 from it, and
-        /// grows with the distance.
+            nullptr; ///< x, y, z of each control vertex, if there is a tolerance
+        /// \brief x, y, z of an eye, or null.  With an eye the tolerance grows with the distance from it, and is \p tolerance
+        /// at distance 1.
         ///
-        /// For an error of some pixels in a picture of perspective, \p tolerance is what so many pixels measure at
-        /// the distance 1.
+        /// For an error of n pixels in a perspective picture, \p tolerance is the size of n pixels at distance 1.
         float const *eye = nullptr;
         bool generateVaryingTables =
             true; ///< with points of their own, as generateVaryingLocalPoints has
@@ -123,11 +120,12 @@ public:
     ///
     /// Weights of a local point sum to 1; some are negative.  The same bits for any number of threads.
     ///
-    /// \return  null on failure: InvalidArgument (a level out of range or without full topology: see
-    ///          GetRefineUniformOptions(); a channel that the mesh has not; a tolerance that is negative or no number, or without positions; an eye without a tolerance), Unsupported (a level that is not refined by hexagonal steps; a
-    ///          boundary that follows the paper's rule, VTX_BOUNDARY_NONE, whose edge is named; what has
-    ///          no limit: see LimitStencilTableFactory; a mesh of holes alone), or TooLarge (more than 2^28 - 1 patches, or
-    ///          2^31 - 1 weights of points).
+    /// \return  null on failure:
+    ///          - InvalidArgument: a level out of range or without full topology (GetRefineUniformOptions()); a channel that the
+    ///            mesh does not have; a tolerance that is negative, no number, or without positions; an eye without tolerance
+    ///          - Unsupported: levels of other than hexagonal steps; a boundary with VTX_BOUNDARY_NONE, whose edge is named; a
+    ///            vertex or face without a limit (LimitStencilTableFactory); a mesh of holes alone
+    ///          - TooLarge: more than 2^28 - 1 patches, or 2^31 - 1 weights of points
     static std::unique_ptr<Far::PatchTable const>
     Create(TopologyRefiner const &refiner, Options options, CallStatus *status = nullptr);
 
@@ -141,7 +139,7 @@ public:
 
     /// \brief The stencils of the points of a face-varying channel of the mesh, as its patches have them.
     ///
-    /// \return  null on failure, as Create(); InvalidArgument for a channel that the mesh has not
+    /// \return  null on failure, as Create(); InvalidArgument for a channel that the mesh does not have
     static std::unique_ptr<Far::StencilTable const>
     CreateLocalPointFaceVaryingStencilTable(TopologyRefiner const &refiner, Options options,
                                             int channel = 0, CallStatus *status = nullptr);

@@ -168,10 +168,9 @@ struct LimitStencilTableTypes<float> {
 ///     int const normal = sides.FindSide(level, face, corner); // of a table with generateFurtherSides
 /// \endcode
 ///
-/// Where fewer meet, and at sharp boundaries without creases, a vertex has one side.  Sides are
-/// counted around the vertex, in the order of its faces and from the first sharp edge on.  Side 0
-/// has the index of its vertex; the further sides of all vertices, in their order, follow the
-/// vertices.
+/// Other vertices have one side, and so have those on sharp boundaries without creases.  Sides are counted around the vertex,
+/// in the order of its faces, from the first sharp edge on.  Side 0 has the index of its vertex.  The further sides of all
+/// vertices follow, in the order of the vertices.
 class OPENSUBDIVHEX_API LimitSides {
 public:
     /// A vertex, a face or a side.
@@ -196,16 +195,16 @@ public:
         return side < _numVertices ? 0 : getFurtherSide(side).side;
     }
 
-    /// \brief Whether these are valid and the sides of \p level, or of one that has the same.
+    /// \brief Whether these sides are valid, and \p level has the same sides.
     ///
-    /// Finds those of \p level to compare them.
+    /// Finds the sides of \p level to compare them.
     bool IsOf(TopologyLevel const &level) const;
 
     /// \brief The side on which a face has its vertex number \p local.
     ///
     /// \param level  that of the constructor, or one for which IsOf() is true
-    /// \param half   of a hexagon with an infinitely sharp diagonal, the half that is meant, as in
-    ///               kHexagonHalves; ignored for other faces
+    /// \param half   the half of a face with an infinitely sharp diagonal, as in GetPlaceInHalves(); ignored for other
+    ///               faces
     Index FindSide(TopologyLevel const &level, Index face, int local, int half = 0) const;
 
 private:

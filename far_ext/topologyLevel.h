@@ -265,7 +265,7 @@ public:
     /// \param half  of a face with two base faces, the half that is meant
     /// \param uv    gets u and v of each vertex: of the face or, when it has two base faces, of the
     ///              half, in the order of GetPlaceInHalves()
-    /// \return      false, and \p uv is not written, at levels behind other than hexagonal steps
+    /// \return      false, and \p uv is not written, behind a FirstStep and behind all other steps that are not hexagonal
     bool GetFaceBaseCoords(Index f, int half, float *uv) const;
     /// \copydoc GetFaceBaseCoords(Index, int, float *) const
     bool GetFaceBaseCoords(Index f, int half, double *uv) const;

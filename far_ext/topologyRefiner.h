@@ -94,15 +94,15 @@ public:
 
     /// \brief Refines all faces \p options.refinementLevel times, replacing earlier refinements.
     ///
-    /// \return  false with StatusCode::InvalidArgument for a negative level, and with
-    ///          StatusCode::TooLarge, which names the level and the count, when a size or the sum
-    ///          of a size over the levels exceeds 2^31 - 1, or for a level beyond kLastLevel; with
-    ///          InvalidArgument for another number of labels than of base faces, and Unsupported for labels
-    ///          that differ where a step does not keep them apart.  No memory is taken
-    ///          then and the levels are as before.  The sizes of a tri-hex step with borders, and of
-    ///          a truncation that cuts polygons, and what follows are known only once it is made:
-    ///          there the base alone is left.  When std::bad_alloc is thrown, it is, too, unless all
-    ///          levels are as before.
+    /// \return  false on failure:
+    ///          - InvalidArgument: a negative level; another number of labels than of base faces
+    ///          - TooLarge, which names the level and the count: a size, or its sum over the levels, exceeds 2^31 - 1; a
+    ///            level beyond kLastLevel
+    ///          - Unsupported: labels that differ where a step does not keep them apart
+    ///
+    ///          The levels are then as before, with one exception: sizes behind a tri-hex step with borders, and behind a
+    ///          truncation that cuts polygons, are known only when that step is made; if they are too large, level 0 alone
+    ///          is left.  After std::bad_alloc there are all levels of before, or level 0 alone.
     bool RefineUniform(UniformOptions options, CallStatus *status = nullptr);
 
     /// The options of the last successful RefineUniform; of level 0 after RefineCoplanar and
@@ -122,14 +122,14 @@ public:
         bool fullTopologyInLastLevel = false; ///< as in UniformOptions
     };
 
-    /// \brief Refines as the paper's stage 3 says: edges between faces of the same normal make
-    /// quads, others hexagons.  Replaces earlier refinements.
+    /// \brief Refines as the paper's stage 3: an edge between two faces of the same normal makes a quad, other edges make
+    /// hexagons.  Replaces earlier refinements.
     ///
-    /// The faces are those of the rest pose, which the masks refine along; they fix the topology,
-    /// and tables and primvars work for any other pose as ever.  The normal of a face is that of
-    /// its polygon's vector area, planar or not; a face of no area has none.  Edges at boundaries,
-    /// creases, crease diagonals, sharp and non-manifold vertices and face-varying seams always
-    /// make hexagons.  INDEXING.md has the numbering.
+    /// Normals are those of a rest pose, which is refined with the levels.  They fix the topology: tables and primvars then
+    /// work for any other pose.  The normal of a face is the direction of its polygon's vector area, planar or not; a face
+    /// of no area has none.  Edges at boundaries, creases, crease diagonals, sharp and non-manifold vertices and face-varying
+    /// seams always make hexagons.
+    /// INDEXING.md has the numbering.
     ///
     /// \param restPositions  x, y, z of the GetLevel(0).GetNumVertices() vertices of level 0
     /// \return  false with StatusCode::InvalidArgument for a negative level, an angle that is not

@@ -17,8 +17,8 @@ enum class CreaseCuts {
 
 /// \brief Options of CreatePolygonIndices and CreateTriangleIndices: which faces are drawn, and where hexagons are cut.
 ///
-/// A cut goes from vertex 0 to vertex 3, into the halves of FarExt::kHexagonHalves, and adds no vertex.  Only hexagons on
-/// an edge of level 0 are ever cut.
+/// A cut goes from vertex 0 to TopologyLevel::GetFaceDiagonalEnd(), 3 in hexagons, and adds no vertex.  It can cut hexagons on
+/// edges of level 0 and, behind FirstStep::Truncate, polygons of vertices on a crease.
 ///
 /// \code
 ///     OsdExt::DrawOptions options;
@@ -44,14 +44,13 @@ struct DrawOptions {
     /// The sides of the level's vertices (LimitSides::IsOf), for DrawnFaces::sides; infinitely sharp
     /// creases then cut in any case.  Null for none.
     FarExt::LimitSides const *sides = nullptr;
-    /// Whether the vertices are those of \p sides in place of those of the level: a vertex that a
-    /// crease splits for shading is then several, sides->GetNumSides() in all, of which
-    /// sides->GetVertex() has the vertex of each.  A limit stencil table with generateFurtherSides
-    /// has them in that order.
+    /// Whether DrawnFaces::vertices are sides in place of vertices of the level: a vertex on a crease is several, one for
+    /// each of its normals.  There are sides->GetNumSides() of them, and sides->GetVertex() has the vertex of each.  A limit
+    /// stencil table with generateFurtherSides has the same order.
     bool splitVertices = false;
-    /// Whether vertices are those of DrawnFaces::drawnVertices, each with one value of each of
-    /// \p fvarChannels, one of \p sides and, with generateBaseCoords, one place in one base face: for
-    /// what has one index for each corner, such as the buffers of graphics libraries, and PLY files.
+    /// Whether DrawnFaces::vertices are those of DrawnFaces::drawnVertices: each has one value of each of \p fvarChannels, one
+    /// of \p sides and, with generateBaseCoords, one place in one base face.  For formats with one index for each corner, such
+    /// as the buffers of graphics libraries, and PLY files.
     bool separateVertices = false;
     /// Whether DrawnFaces::baseCoords are made; cuts as cutBaseFaces does.
     bool generateBaseCoords = false;
@@ -102,11 +101,11 @@ struct DrawnFaces {
     /// @name By drawn face
     /// @{
 
-    /// The face of the level that it is, or is a part of.
+    /// The face of the level that the drawn face is, or is a part of.
     std::vector<int> faces;
-    /// The face of level 0 that it lies in: TopologyLevel::GetFaceBaseFace.
+    /// The face of level 0 that the drawn face lies in: TopologyLevel::GetFaceBaseFace.
     std::vector<int> baseFaces;
-    /// The label of that.  Empty without labels.
+    /// The label of the base face.  Empty without labels.
     std::vector<int> labels;
     /// @}
 
@@ -116,7 +115,7 @@ struct DrawnFaces {
 
 /// \brief The faces of a level as polygons.
 struct PolygonIndices : DrawnFaces {
-    /// Corners of each polygon: those of its face, or four of half a hexagon.
+    /// Corners of each polygon: those of its face or, if that is cut, of its half.
     std::vector<int> sizes;
 
     /// How many there are.

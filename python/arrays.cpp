@@ -68,7 +68,7 @@ bool isHeld(FROM number) {
 
 template <typename TO, typename FROM>
 py::array_t<TO> convertFrom(py::array const &array, char const *name) {
-    py::array_t<FROM> const wide = gather<FROM>(array);
+    py::array_t<FROM> wide = gather<FROM>(array);
     if constexpr (std::is_same_v<TO, FROM>) {
         return wide;
     } else {
@@ -258,7 +258,7 @@ Elements<REAL> TakeDestination(py::handle object, char const *name, int count,
     if (char const *const obstacle = findObstacle(array)) {
         throw py::value_error(std::string(name) + ": " + obstacle);
     }
-    Elements<REAL> const destination = describe<REAL>(array, array.mutable_data());
+    Elements<REAL> destination = describe<REAL>(array, array.mutable_data());
     if (destination.desc.length != length) {
         throw py::value_error(std::string(name) + ": elements of " + std::to_string(length) +
                               " numbers are needed, as the source has, the shape is " +

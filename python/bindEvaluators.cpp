@@ -64,7 +64,7 @@ Elements<float const> takeControlValues(StencilTable const &stencils, Table cons
         int const *const last = first + table.GetSizes()[std::size_t(i)];
         numSources = std::max(numSources, first == last ? 0 : *std::max_element(first, last) + 1);
     }
-    Elements<float const> const source = TakeSource<float>(src, "src", -1);
+    Elements<float const> source = TakeSource<float>(src, "src", -1);
     if (source.count < numSources) {
         throw py::value_error("src: " + std::to_string(numSources) +
                               " elements at least are needed, the shape is " +

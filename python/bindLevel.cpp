@@ -181,9 +181,9 @@ py::array_t<float> getCoords(Level const &self, int half, IS_SPLIT const &isSpli
             }
             for (int i = 0; i < numOfHalf; ++i) {
                 std::copy_n(&ofHalf[2 * std::size_t(i)], 2,
-                            place + 2 * GetPlaceInHalves(half, i, end));
+                            place + 2 * std::ptrdiff_t(GetPlaceInHalves(half, i, end)));
             }
-            place += 2 * size;
+            place += 2 * std::ptrdiff_t(size);
         }
         return values;
     });
@@ -504,8 +504,8 @@ private:
 /// Returns the data of drawn faces by corner and by face, and the separate vertices, where there are any.  Data by
 /// corner have the shape (corners,), or (faces, \p width) where all faces have \p width corners.
 py::dict describeFaces(OsdExt::DrawnFaces &&faces, py::ssize_t width, bool isSeparate) {
-    auto const byCorner = [width](auto &&values, py::ssize_t numbers) -> py::object {
-        using T = std::decay_t<decltype(values[0])>;
+    auto const byCorner = [width](auto values, py::ssize_t numbers) -> py::object {
+        using T = typename decltype(values)::value_type;
         std::vector<py::ssize_t> shape = {py::ssize_t(values.size()) / numbers};
         if (width > 1) {
             shape = {shape[0] / width, width};

@@ -183,9 +183,9 @@ py::tuple findPlaces(PatchTable const &self, py::object const &faces, py::object
 
 template <typename QUERY>
 py::array_t<int> listFaces(PatchTable const &self, QUERY const &query) {
-    std::vector<int> faces;
-    for (int patch = 0; patch < self.GetNumPatches(); ++patch) {
-        faces.push_back(query(*self.map, patch));
+    std::vector<int> faces(std::size_t(self.GetNumPatches()));
+    for (std::size_t i = 0; i < faces.size(); ++i) {
+        faces[i] = query(*self.map, int(i));
     }
     return TakeOver(std::move(faces));
 }

@@ -147,7 +147,10 @@ private:
             RaiseUnlessOk(status);
             return arrays;
         };
-        return IsDouble(src) ? run(double()) : run(float());
+        if (IsDouble(src)) {
+            return run(double());
+        }
+        return run(float());
     }
 
     template <typename COUNT>
@@ -191,7 +194,10 @@ private:
             });
             return py::object(destination.array);
         };
-        return IsDouble(src) ? run(double()) : run(float());
+        if (IsDouble(src)) {
+            return run(double());
+        }
+        return run(float());
     }
 
     std::shared_ptr<Refiner> _refiner;

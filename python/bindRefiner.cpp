@@ -11,7 +11,6 @@
 #include <cstdint>
 #include <limits>
 #include <optional>
-#include <type_traits>
 
 namespace OpenSubdivHex::Python {
 
@@ -197,25 +196,6 @@ struct Description {
     }
 };
 
-/// \brief Takes a number of the type T, \p typeName to Python.
-///
-/// Takes a number.  Where pybind11 refuses one, its message has all arguments, all faces among them.
-template <typename T>
-T takeNumber(py::object const &object, char const *name, char const *typeName) {
-    try {
-        return object.cast<T>();
-    } catch (py::cast_error const &) {
-        auto const number = py::reinterpret_steal<py::object>(PyNumber_Index(object.ptr()));
-        PyErr_Clear();
-        if (!std::is_same_v<T, bool> && number) {
-            throw py::value_error(std::string(name) + ": " + std::string(py::str(object)) +
-                                  " is a number that 32 bits do not hold");
-        }
-        throw py::type_error(std::string(name) + ": " + typeName + " is needed, not " +
-                             Py_TYPE(object.ptr())->tp_name);
-    }
-}
-
 /// Makes level 0, without the interpreter's lock.
 std::shared_ptr<Refiner> makeRefiner(BaseMesh mesh, CallStatus *status) {
     std::unique_ptr<TopologyRefiner> refiner;
@@ -230,18 +210,15 @@ std::shared_ptr<Refiner> makeRefiner(BaseMesh mesh, CallStatus *status) {
     return std::make_shared<Refiner>(std::move(refiner), std::move(mesh));
 }
 
-std::shared_ptr<Refiner>
-createRefiner(py::object const &faces, py::object const &numVertices, py::object const &faceOffsets,
-              py::object const &creases, py::object const &corners, py::object const &holes,
-              py::object const &fvarChannels, py::object const &numFVarValues,
-              py::object const &isLeftHanded, py::object const &vtxBoundaryInterpolation,
-              py::object const &fvarLinearInterpolation, py::object const &creasingMethod,
-              py::object const &faceMask, py::object const &schemeType, py::object const &firstStep,
-              py::kwargs const &others) {
-    for (auto const &[name, value] : others) {
-        throw py::type_error("TopologyRefiner: there is no argument '" +
-                             std::string(py::str(name)) + "'");
-    }
+std::shared_ptr<Refiner> createRefiner(py::object const &faces, std::optional<int> numVertices,
+                                       py::object const &faceOffsets, py::object const &creases,
+                                       py::object const &corners, py::object const &holes,
+                                       py::object const &fvarChannels,
+                                       py::object const &numFVarValues, bool isLeftHanded,
+                                       py::object const &vtxBoundaryInterpolation,
+                                       py::object const &fvarLinearInterpolation,
+                                       py::object const &creasingMethod, py::object const &faceMask,
+                                       py::object const &schemeType, py::object const &firstStep) {
     BaseMesh mesh;
     mesh.sdcOptions.SetVtxBoundaryInterpolation(
         TakeEnum<OpenSubdiv::Sdc::Options::VtxBoundaryInterpolation>(vtxBoundaryInterpolation,
@@ -259,12 +236,8 @@ createRefiner(py::object const &faces, py::object const &numVertices, py::object
     } else {
         takeFlatFaces(faces, faceOffsets, &mesh);
     }
-    std::optional<int> givenNumVertices;
-    if (!numVertices.is_none()) {
-        givenNumVertices = takeNumber<int>(numVertices, "num_vertices", "an integer");
-    }
-    mesh.numVertices = findCount(mesh.faceVertices, givenNumVertices, "num_vertices");
-    mesh.isLeftHanded = takeNumber<bool>(isLeftHanded, "is_left_handed", "a bool");
+    mesh.numVertices = findCount(mesh.faceVertices, numVertices, "num_vertices");
+    mesh.isLeftHanded = isLeftHanded;
     takeTags(creases, corners, holes, &mesh);
     takeChannels(fvarChannels, numFVarValues, &mesh);
 

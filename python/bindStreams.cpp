@@ -721,7 +721,8 @@ void bindViews(py::module_ &module) {
             "The fraction below which refined cells are merged.")
         .def("make_forest", &takeMesh,
              "make_forest(factory, points, previous=None)\n\n"
-             "The CellForest of a mesh.\n\n"
+             "The CellForest of a mesh.  Faces without a surface are not refined:\n"
+             "PatchStream.run() raises StatusError for them.\n\n"
              "Args:\n"
              "    factory: a SurfaceFactory, or ViewBounds, which save time from view to view\n"
              "    points: positions of the mesh, shape (points, 3 or more); float32 and float64 "

@@ -216,6 +216,26 @@ py::tuple getLevelFaces(FaceSurfaceFactory const &self) {
     return py::make_tuple(TakeOver(std::move(faces)), TakeOver(std::move(halves)));
 }
 
+py::tuple findSurfacePlaces(FaceSurfaceFactory const &self, py::object const &faces,
+                            py::object const &uv) {
+    py::array_t<int> const controlFaces = TakeIndices(faces, "faces");
+    auto const numPlaces = std::size_t(controlFaces.size());
+    std::vector<double> const controlCoords = takePlaces(uv, int(numPlaces));
+    std::vector<int> surfaceFaces(numPlaces);
+    Points surfaceCoords({py::ssize_t(numPlaces), py::ssize_t(2)});
+    int const *const read = controlFaces.data();
+    double *const write = surfaceCoords.mutable_data();
+    FarExt::CallStatus status;
+    self.Read([&](BfrExt::SurfaceFactory const &factory) {
+        for (std::size_t i = 0; i < numPlaces && status.IsOk(); ++i) {
+            factory.FindSurfacePlace(read[i], &controlCoords[2 * i], &surfaceFaces[i],
+                                     write + 2 * i, &status);
+        }
+    });
+    RaiseUnlessOk(status);
+    return py::make_tuple(TakeOver(std::move(surfaceFaces)), surfaceCoords);
+}
+
 // Lists get(faces, local) for the vertices or edges of a face.
 template <typename GET>
 py::array_t<int> listAround(FaceSurfaceFactory const &self, int face, GET const &get) {
@@ -490,6 +510,17 @@ void BindSurfaces(py::module_ &module) {
              "for faces\n"
              "that depend on too many others.  vertex_surface() raises an error with the cause.",
              py::arg("face"))
+        .def(
+            "find_surface_places", &findSurfacePlaces,
+            "find_surface_places(faces, uv)\n\n"
+            "Returns (faces, uv) of places on the control mesh, for SurfacePlaces: with first step "
+            "'truncate'\n"
+            "those of level 1, else what was given.\n\n"
+            "Args:\n"
+            "    faces: faces of level 0, integers, shape (n,)\n"
+            "    uv: u and v in each face, inside of it, shape (n, 2)\n\n"
+            "Raises StatusError for a face out of range, and with first step 'tri_hex'.",
+            py::arg("faces"), py::arg("uv"))
         .def("vertex_surface", &makeVertexSurface,
              "vertex_surface(face)\n\nThe Surface of vertex data.  Raises StatusError where the "
              "face has none.",

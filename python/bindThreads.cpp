@@ -35,16 +35,16 @@ Executor *findExecutor(ExecutorType type) {
         return &GetDefaultExecutor();
     case ExecutorType::Omp: {
 #ifdef _OPENMP
-        static auto *const executor = new OmpExecutor;
-        return executor;
+        static auto &executor = *new OmpExecutor;
+        return &executor;
 #else
         break;
 #endif
     }
     case ExecutorType::Tbb: {
 #ifdef OPENSUBDIVHEX_HAS_TBB
-        static auto *const executor = new TbbExecutor;
-        return executor;
+        static auto &executor = *new TbbExecutor;
+        return &executor;
 #else
         break;
 #endif

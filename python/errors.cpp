@@ -75,13 +75,14 @@ void Raise(FarExt::CallStatus const &status) {
 }
 
 void Warn(FarExt::CallStatus const &status) {
+    constexpr int kOfCaller = 2; // the frame behind that of _arguments.py
     for (FarExt::Warning const &warning : status.GetWarnings()) {
         py::object const notice = py::handle(statusWarning)(warning.message);
         notice.attr("code") = warning.code;
         notice.attr("component") = warning.component;
         notice.attr("index") = componentIndex(warning.index);
         notice.attr("count") = warning.count;
-        py::module_::import("warnings").attr("warn")(notice);
+        py::module_::import("warnings").attr("warn")(notice, py::none(), kOfCaller);
     }
 }
 

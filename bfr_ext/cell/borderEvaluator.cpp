@@ -65,8 +65,13 @@ void BorderEvaluator<REAL>::SetFace(CellType const &type, int const *turns, REAL
     _size = size;
     _paddedSize = StepMatrix::GetPaddedSize(size);
     _edge = {};
-    _places = {};
-    _vertex = {};
+    // As long as the type is there, so are its items and their matrices.
+    if (_typeNumber != type.GetNumber()) {
+        _typeNumber = type.GetNumber();
+        _items.assign(2 * _numEdges, {});
+        _places = {};
+        _vertex = {};
+    }
 }
 
 template <typename REAL>
@@ -84,6 +89,7 @@ void BorderEvaluator<REAL>::SetFace(PlainFaceType const &type, int const *turns,
     _size = size;
     _paddedSize = _values.GetPaddedSize();
     _edge = {};
+    _typeNumber = 0;
     _places = {};
     _vertex = {};
 }
@@ -108,6 +114,19 @@ void BorderEvaluator<REAL>::EvaluateVertex(std::size_t vert, REAL *result) {
         SumUpPlaces(findVertex(*item.type),
                     {_points, _stride, _size, item.points.data(), result, 0});
     }
+}
+
+// Returns an item for which a plain face has no rings.
+template <typename REAL>
+CellType::BorderItem const &BorderEvaluator<REAL>::getItem(std::size_t item) {
+    if (_plain) {
+        return _plain->GetLatticeItem(_turns, item);
+    }
+    KnownItem &known = _items[item];
+    if (known.turn != _turns[item]) {
+        known = {_turns[item], &_type->GetBorderItem(_turns, item)};
+    }
+    return *known.item;
 }
 
 template <typename REAL>

@@ -6,6 +6,9 @@
 #include "placeKernel.h"
 #include "plainFace.h"
 
+#include <cstdint>
+#include <vector>
+
 namespace OpenSubdivHex::BfrExt::internal {
 
 /// \brief Evaluates what lies on the border of a base face, of which all faces that share it form the
@@ -66,10 +69,7 @@ private:
     PlaceMatrix<REAL> const &findVertex(CellType const &type);
     void evaluateInside(std::size_t edge, bool isRate, int level, REAL *results,
                         std::ptrdiff_t stride);
-    // An item for which a plain face has no rings.
-    CellType::BorderItem const &getItem(std::size_t item) const {
-        return _plain ? _plain->GetLatticeItem(_turns, item) : _type->GetBorderItem(_turns, item);
-    }
+    CellType::BorderItem const &getItem(std::size_t item);
     void setEdge(std::size_t edge);
     void sumUp(PlaceMatrix<REAL> const &matrix, REAL *results, std::ptrdiff_t resultStride) const {
         SumUpPlaces(matrix,
@@ -88,7 +88,14 @@ private:
     std::size_t _edgeNumber = 0;
     Sources _edge = {};
     bool _isReversed = false;
-    // The matrices of the edge and of the vertex that were last asked for: mostly others of the face are alike.
+    // The number of the type of the last face, if it is not plain, and its items: mostly the next face is alike.
+    struct KnownItem {
+        int turn = -1;
+        CellType::BorderItem const *item = nullptr;
+    };
+    std::uint64_t _typeNumber = 0;
+    std::vector<KnownItem> _items;
+    // The matrices of the edge and of the vertex that were last asked for: mostly others of the type are alike.
     struct Found {
         PatternTable *patterns;
         PatternOf of;

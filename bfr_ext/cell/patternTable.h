@@ -62,25 +62,36 @@ public:
         };
         Entry const *entry = _entries.Find(hash, isSame);
         if (!entry) {
-            auto pattern = std::make_shared<PATTERN const>(make());
-            std::size_t const size = sizeof(PATTERN) + GetHeapSize(*pattern);
-            auto const [added, isNew] = _entries.Add(
-                std::make_unique<Entry const>(Entry{kind, {begin, end}, hash, std::move(pattern)}),
-                isSame);
+            auto made = std::make_unique<EntryOf<PATTERN> const>(hash, kind, begin, end, make);
+            std::size_t const size = sizeof(PATTERN) + GetHeapSize(made->pattern);
+            auto const [added, isNew] = _entries.Add(std::move(made), isSame);
             if (isNew) {
                 _memory.Add(decltype(_entries)::kEntrySize + GetHeapSize(added->rest) + size);
             }
             entry = added;
         }
-        return *static_cast<PATTERN const *>(entry->pattern.get());
+        return static_cast<EntryOf<PATTERN> const *>(entry)->pattern;
     }
 
 private:
     struct Entry {
-        int kind;
-        std::vector<int> rest;
-        std::size_t hash;
-        std::shared_ptr<void const> pattern;
+        Entry(std::size_t hashOfKey, int kindOfKey, int const *begin, int const *end)
+            : hash(hashOfKey), kind(kindOfKey), rest(begin, end) {}
+        virtual ~Entry() = default;
+
+        std::size_t const hash;
+        int const kind;
+        std::vector<int> const rest;
+    };
+    // Beside its key, so that a look-up reads few lines of the cache.
+    template <typename PATTERN>
+    struct EntryOf final : Entry {
+        template <typename MAKE>
+        EntryOf(std::size_t hashOfKey, int kindOfKey, int const *begin, int const *end,
+                MAKE const &make)
+            : Entry(hashOfKey, kindOfKey, begin, end), pattern(make()) {}
+
+        PATTERN const pattern;
     };
 
     static std::size_t getHash(int kind, int const *begin, int const *end) {

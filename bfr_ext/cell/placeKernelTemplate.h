@@ -185,6 +185,15 @@ public:
                              indices};
         REAL const *const weights = matrix.GetBlock(begin);
         if (tiles.width == PlaceMatrix<REAL>::kLanes) {
+            // Machines that split wide registers take half the time for so few places.
+            if constexpr (BYTES == 64) {
+                if (count <= kSize / 2) {
+                    TileSums<BYTES / 2, REAL> const half{tiles.numPoints, tiles.width, points,
+                                                         stride, indices};
+                    half.template formNarrow<NUM_COMPONENTS, HAS_INDICES>(weights, 0, result);
+                    return;
+                }
+            }
             for (std::size_t first = 0; first < count; first += kSize) {
                 tiles.template formNarrow<NUM_COMPONENTS, HAS_INDICES>(weights, first, result);
             }
@@ -202,6 +211,9 @@ public:
     int const *indices;
 
 private:
+    template <std::size_t OTHER_BYTES, typename OTHER_REAL>
+    friend class TileSums;
+
     // Registers of places at most, so that the sums of all components are in registers: there are 32 of
     // the widest ones, and else 16.
     static constexpr std::size_t kMaxTile = BYTES == 64 ? 6 : 3;

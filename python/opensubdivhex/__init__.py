@@ -23,6 +23,11 @@ What the library refuses raises StatusError.  The interpreter's lock is released
 
 try:
     from . import _opensubdivhex
+    from ._arguments import name_wrong_arguments as _name_wrong_arguments
+
+    # So help() lists them, under the names by which programs know them.
+    __all__ = [name for name in dir(_opensubdivhex) if not name.startswith("_")]
+    _name_wrong_arguments(_opensubdivhex, __all__)
     from ._opensubdivhex import *
     from ._opensubdivhex import __version__
 except ImportError as error:
@@ -38,8 +43,6 @@ except ImportError as error:
     raise
 
 
-# So help() lists them, under the names by which programs know them.
-__all__ = [name for name in dir(_opensubdivhex) if not name.startswith("_")]
 for _value in map(globals().get, __all__):
     if isinstance(_value, type):
         _value.__module__ = __name__

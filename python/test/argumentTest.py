@@ -41,9 +41,9 @@ def refiner():
      r"creases: number 0 is 1e\+300, which float32 does not hold"),
     ({"faces": CUBE_FACES, "num_vertices": -1}, ValueError, "num_vertices: -1"),
     ({"faces": CUBE_FACES, "num_vertices": 8.0}, TypeError,
-     "^num_vertices: an integer is needed, not float$"),
+     "^num_vertices: an integer or None is needed, not float$"),
     ({"faces": CUBE_FACES, "num_vertices": np.array([8, 9])}, TypeError,
-     "^num_vertices: an integer is needed, not numpy.ndarray$"),
+     "^num_vertices: an integer or None is needed, not ndarray$"),
     ({"faces": CUBE_FACES, "num_vertices": 2**40}, ValueError,
      "^num_vertices: 1099511627776 is a number that 32 bits do not hold$"),
     ({"faces": CUBE_FACES, "num_vertices": np.int64(-2**40)}, ValueError, "32 bits"),
@@ -281,7 +281,8 @@ def test_further_arguments(refiner):
         (lambda: osh.LimitStencilTable(refiner, 0, generate_vertices=False), osh.StatusError, ""),
         (lambda: osh.CpuEvaluator.eval_stencils(table, CUBE_POSITIONS), TypeError,
          "table: evaluators take float32"),
-        (lambda: osh.CpuEvaluator.eval_stencils(None, CUBE_POSITIONS), TypeError, ""),
+        (lambda: osh.CpuEvaluator.eval_stencils(None, CUBE_POSITIONS), TypeError,
+         "^table: a (Compact)?StencilTable is needed, not NoneType$"),
         (lambda: osh.RefinementEvaluator(refiner, interpolation_mode="face_varying",
                                          fvar_channel=1), osh.StatusError, ""),
         (lambda: primvars.interpolate(1, CUBE_POSITIONS.astype(complex)), TypeError, "numbers"),
@@ -293,11 +294,50 @@ def test_further_arguments(refiner):
         (lambda: osh.compute_normals(three[:, :2], three[:, :2]), ValueError, "vectors"),
         (lambda: osh.compute_normals(three, three, np.zeros((5, 3))), TypeError, "normals"),
         (lambda: osh.set_simd_level("sse"), ValueError, "level: 'sse' is none of"),
-        (lambda: osh.set_num_threads("two"), TypeError, ""),
+        (lambda: osh.set_num_threads("two"), TypeError, "^num_threads: an integer is needed, not str$"),
     ]
     for call, error, message in calls:
         with pytest.raises(error, match=message):
             call()
+
+
+def test_simple_arguments(refiner):
+    surfaces = osh.SurfaceFactory(refiner)
+    camera = osh.Camera((0, 0, 5))
+    calls = [
+        (lambda: refiner.refine_uniform("3"), "^level: an integer is needed, not str$"),
+        (lambda: refiner.refine_uniform(level=3.0), "^level: an integer is needed, not float$"),
+        (lambda: refiner.refine_uniform(np.zeros(2, int)), "^level: an integer is needed, not ndarray$"),
+        (lambda: refiner.refine_uniform(), "^refine_uniform: the argument level is missing$"),
+        (lambda: refiner.refine_uniform(3, full=True), "^refine_uniform: there is no argument 'full'$"),
+        (lambda: refiner.refine_uniform(3, level=3), "^refine_uniform: level is given twice$"),
+        (lambda: refiner.refine_uniform(3, []), "full_topology_in_last_level: a bool is needed, not list"),
+        (lambda: surfaces.vertex_surface(face=None), "^face: an integer is needed, not NoneType$"),
+        (lambda: osh.SurfaceFactory(CUBE_POSITIONS),
+         "^refiner: a TopologyRefiner is needed, not ndarray$"),
+        (lambda: osh.StencilTable(refiner, max_level="1"),
+         "^max_level: an integer or None is needed, not str$"),
+        (lambda: osh.StencilTable(refiner, "varying"),
+         "^StencilTable: at most 1 arguments without a name, not 2$"),
+        (lambda: osh.Camera((0, 0, 5), field_of_view="wide"), "^field_of_view: a number is needed, not str$"),
+        (lambda: osh.View(camera, flatness=None), "^flatness: a number is needed, not NoneType$"),
+        (lambda: osh.create_triangle_indices(refiner.get_level(1), fvar_channels=["uv"]),
+         "^fvar_channels: a list of int is needed, not list of str$"),
+        (lambda: osh.CpuEvaluator.eval_stencils(osh.StencilTable(refiner), CUBE_POSITIONS, end="all"),
+         "^end: an integer or None is needed, not str$"),
+    ]
+    for call, message in calls:
+        with pytest.raises(TypeError, match=message) as caught:
+            call()
+        assert caught.value.__context__ is None
+    with pytest.raises(TypeError, match="^refine_uniform: at most 3 arguments without a name, not 4$"):
+        refiner.refine_uniform(3, True, None, 4)
+    with pytest.raises(ValueError, match="^level: 4294967296 is a number that 32 bits do not hold$"):
+        refiner.refine_uniform(2**32)
+    with pytest.raises(ValueError, match="^fvar_channels: -4294967296 is a number that 32 bits"):
+        osh.create_triangle_indices(refiner.get_level(1), fvar_channels=[0, -2**32])
+    with pytest.raises(TypeError, match="No constructor"):
+        osh.Surface(refiner)
 
 
 @pytest.mark.parametrize("rest, error, message", [

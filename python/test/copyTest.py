@@ -153,3 +153,9 @@ def test_errors():
     assert type(made) is osh.StatusError and str(made) == str(caught.value)
     assert (made.code, made.component, made.index) == (
         osh.StatusCode.INVALID_TOPOLOGY, osh.ComponentType.FACE, 1)
+
+
+def test_functions_are_those_of_the_package():
+    for function in (osh.create_triangle_indices, osh.CpuEvaluator.eval_stencils, osh.TopologyRefiner.get_level):
+        assert function.__module__ == "opensubdivhex"
+        assert pickle.loads(pickle.dumps(function)) is function

@@ -212,6 +212,7 @@ def test_levels_that_are_too_large_are_refused():
 def test_inconsistent_orientation_is_warned_of():
     with pytest.warns(osh.StatusWarning) as caught:
         osh.TopologyRefiner([[0, 1, 2], [0, 1, 3]])
+    assert caught[0].filename == __file__
     warning = caught[0].message
     assert warning.code == osh.WarningCode.INCONSISTENT_ORIENTATION
     assert warning.component == osh.ComponentType.EDGE

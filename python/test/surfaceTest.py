@@ -413,3 +413,28 @@ def test_faces_that_depend_on_too_many_others_have_no_surface():
     with pytest.raises(osh.StatusError, match="vertex 0") as caught:
         factory.vertex_surface(0)
     assert caught.value.component == osh.ComponentType.VERTEX
+
+
+def test_places_on_the_control_mesh():
+    coarse = make_refiner()
+    faces, uv = osh.SurfaceFactory(coarse).find_surface_places([4, 0], [[0.25, 0.5], [1, 0]])
+    np.testing.assert_array_equal(faces, [4, 0])
+    np.testing.assert_array_equal(uv, [[0.25, 0.5], [1, 0]])
+
+    refiner = make_refiner(first_step="truncate")
+    refiner.refine_uniform(1, full_topology_in_last_level=True)
+    factory = osh.SurfaceFactory(refiner)
+    points = osh.RefinementEvaluator(refiner).evaluate(POSITIONS, 1)
+    # A vertex is one point from all four faces, the middle of its face of level 1.
+    corners = np.array([[0, 0], [1, 0], [1, 1], [0, 1]])
+    faces, local = np.nonzero(np.array(FACES) == FACES[0][0])
+    faces, uv = factory.find_surface_places(faces, corners[local])
+    assert len(faces) == 4 and (faces == faces[0]).all() and faces[0] >= len(FACES)
+    found = osh.SurfacePlaces(factory, faces, uv).evaluate(points)
+    np.testing.assert_allclose(found, np.tile(found[0], (4, 1)), atol=1e-6)
+    edge = np.linalg.norm(POSITIONS[FACES[0][1]] - POSITIONS[FACES[0][0]])
+    assert np.linalg.norm(found[0] - POSITIONS[FACES[0][0]]) < 0.3 * edge
+    with pytest.raises(osh.StatusError, match="face 48"):
+        factory.find_surface_places([0, 48], [[0, 0], [0, 0]])
+    with pytest.raises(ValueError, match="uv: row 1 is not finite"):
+        factory.find_surface_places([0, 1], [[0, 0], [np.nan, 0]])

@@ -281,10 +281,54 @@ TEST(View, RefinesNothingWhereItIsInvalid) {
         EXPECT_EQ(view.FindLevels(surface, control.data(), 3, levels.data()), 5);
         EXPECT_EQ(levels, std::vector<int>(5));
         View::Counts counts;
+        FarExt::CallStatus status;
         CellForest const forest =
-            view.MakeForest<double>(*factory, shape.positions.data(), 3, nullptr, &counts);
+            view.MakeForest<double>(*factory, shape.positions.data(), 3, nullptr, &counts, &status);
         EXPECT_EQ(forest.GetNumBoundaryPoints(), 8);
         EXPECT_EQ(counts.cellsByLevel, std::vector<long>{6});
+        EXPECT_EQ(status.GetCode(), FarExt::StatusCode::InvalidArgument);
+    }
+}
+
+// A sheet of 16 squares, whose twelve at the free border have no surface, but for a hole.
+TEST(View, NamesTheFirstFaceWithoutASurface) {
+    constexpr int kSquares = 4;
+    Shape shape;
+    for (int y = 0; y <= kSquares; ++y) {
+        for (int x = 0; x <= kSquares; ++x) {
+            shape.positions.insert(shape.positions.end(), {double(x), double(y), 0.1 * x * y});
+            if (x < kSquares && y < kSquares) {
+                int const v = y * (kSquares + 1) + x;
+                shape.faceVertices.insert(shape.faceVertices.end(),
+                                          {v, v + 1, v + kSquares + 2, v + kSquares + 1});
+                shape.faceSizes.push_back(4);
+            }
+        }
+    }
+    shape.holeFaces = {0};
+    Camera camera;
+    camera.eye[2] = 20;
+    View const view(camera);
+    for (bool const isFree : {true, false}) {
+        Sdc::Options options;
+        options.SetVtxBoundaryInterpolation(isFree ? Sdc::Options::VTX_BOUNDARY_NONE
+                                                   : Sdc::Options::VTX_BOUNDARY_EDGE_ONLY);
+        auto const refiner = CreateRefiner(shape, ReferenceMask::Smooth, 0, options);
+        auto const factory = BfrExt::SurfaceFactory::Create(*refiner);
+        BfrExt::ViewBounds bounds(*factory);
+        FarExt::CallStatus found[3];
+        CellForest const forest =
+            view.MakeForest(*factory, shape.positions.data(), 3, nullptr, nullptr, &found[0]);
+        for (int i = 1; i < 3; ++i) {
+            view.MakeForest(bounds, shape.positions.data(), 3, nullptr, nullptr, &found[i]);
+        }
+        for (FarExt::CallStatus const &status : found) {
+            EXPECT_EQ(status.GetCode(),
+                      isFree ? FarExt::StatusCode::Unsupported : FarExt::StatusCode::Ok);
+            EXPECT_EQ(status.GetComponentIndex(), isFree ? 1 : Far::INDEX_INVALID);
+        }
+        EXPECT_GT(forest.GetTree(5).GetNumCells(), 1);
+        EXPECT_EQ(forest.GetTree(1).GetNumCells() == 1, isFree);
     }
 }
 
