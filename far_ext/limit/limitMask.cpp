@@ -704,7 +704,7 @@ LimitMask FaceLimitMaskFinder::findAfterStep(Index face) const {
         child.crossedFaces = {{0, crossed->end}};
     }
     child.numHexagonalSteps = _level.numHexagonalSteps + 1;
-    if (size == HexIndexing::kNumEFaceCorners) {
+    if (hasFlags(face)) {
         for (QuadCorner const &quad : FindCornerTags(_level.quadCorners, first, first + size)) {
             QuadFlags const flags = AppendToQuadFlags(quad.flags, _level.numHexagonalSteps, 0, 0);
             if (flags.HasAny()) {

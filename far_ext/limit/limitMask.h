@@ -87,17 +87,24 @@ public:
     }
 
 private:
-    // Whether its F-face may have other masks, as a hexagon may that is made of quads.
+    // Whether its F-face may have other masks, as a hexagon may that is made of quads, and any face beside a line.
     bool hasFlags(Far::Index face) const {
         Far::Index const first = _level.faceFirstCorner[face];
         Far::Index const end = _level.faceFirstCorner[face + 1];
-        return end - first == HexIndexing::kNumEFaceCorners &&
-               (!FindCornerTags(_level.quadCorners, first, end).empty() || isBesideLine(face));
+        return isBesideLine(face) || (end - first == HexIndexing::kNumEFaceCorners &&
+                                      !FindCornerTags(_level.quadCorners, first, end).empty());
     }
     bool isBesideLine(Far::Index face) const {
-        return !FindCornerTags(_level.lineRowCorners, _level.faceFirstCorner[face],
-                               _level.faceFirstCorner[face + 1])
-                    .empty();
+        Far::Index const first = _level.faceFirstCorner[face];
+        Far::Index const end = _level.faceFirstCorner[face + 1];
+        if (_level.quadCorners.HasLines()) {
+            for (QuadCorner const &quad : FindCornerTags(_level.quadCorners, first, end)) {
+                if (quad.flags.HasLine()) {
+                    return true;
+                }
+            }
+        }
+        return !FindCornerTags(_level.lineRowCorners, first, end).empty();
     }
     LimitMask findAfterStep(Far::Index face) const;
     LimitMask stepBack(LimitMask mask, Far::Index face) const;

@@ -415,6 +415,8 @@ int LimitPatchGatherer::countSteps(LimitPatch const &patch) const {
 
 void LimitPatchGatherer::addIrregularVertices(LimitPatch &patch) {
     patch.numHexagonalSteps = countSteps(patch);
+    patch.hasFirstLineMasks = _level.hasFirstLineMasks && _faceMask == FaceMask::Smooth &&
+                              patch.numHexagonalSteps < kNumLineSteps && hasSharpLines(patch);
     for (Index vert = 0; vert < _numComplete; ++vert) {
         if (IrregularVertex const *const irregular =
                 _level.FindIrregularVertex(patch.sources[vert])) {
@@ -426,7 +428,7 @@ void LimitPatchGatherer::addIrregularVertices(LimitPatch &patch) {
 void LimitPatchGatherer::AddSignature(LimitPatch &patch) {
     std::vector<int> &signature = patch.signature;
     // Most patches have no tags.
-    constexpr std::size_t kNumSizes = 10;
+    constexpr std::size_t kNumSizes = 11;
     signature.reserve(patch.faceSizes.size() + 2 * patch.faceVerts.size() + kNumSizes);
     auto const add = [&](auto const &numbers) {
         signature.push_back(int(numbers.size()));
@@ -463,6 +465,7 @@ void LimitPatchGatherer::AddSignature(LimitPatch &patch) {
         signature.insert(signature.end(), {end.vert, getBits(end.sharpness)});
     }
     signature.push_back(patch.numHexagonalSteps);
+    signature.push_back(int(patch.hasFirstLineMasks));
     CornerTags::ForEachKind(
         [&signature](auto const &tags) {
             signature.push_back(int(tags.size()));
@@ -630,6 +633,7 @@ void BuildPatchLevel(LimitPatch const &patch, Level &level) {
     level.sharpEnds = patch.sharpEnds;
     level.irregularVerts = patch.irregularVerts;
     level.numHexagonalSteps = patch.numHexagonalSteps;
+    level.hasFirstLineMasks = patch.hasFirstLineMasks;
 }
 
 void PatchRefinement::ApplyLeft(std::vector<double> const &left,

@@ -47,6 +47,7 @@ struct LimitPatch : CornerTags {
     std::vector<IrregularVertex> irregularVerts; ///< ascending; of vertex 0 and its neighbours
     /// As of the level, as long as it matters for the masks of this patch or of those that it makes.
     int numHexagonalSteps = 0;
+    bool hasFirstLineMasks = false; ///< likewise
 
     /// All of the above but the sources, the sides, the weights of sharpVerts and irregularVerts, which
     /// follow from the rest.  Which copies of a line's vertices sharpVerts have as neighbors does not.

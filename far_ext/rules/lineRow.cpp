@@ -1,10 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "lineRow.h"
 
-#include "far_ext/rules/mask.h"
-
-#include <algorithm>
-#include <array>
 #include <cstddef>
 
 namespace OpenSubdivHex::FarExt::internal {
@@ -12,21 +8,20 @@ namespace OpenSubdivHex::FarExt::internal {
 namespace {
 
 constexpr int kNumLineFaces = 5;
-constexpr int kNone = -1;
+constexpr int kNone = MaskTable::kNone;
 
-struct LineTableRow {
+struct TruncatedRow {
     int numSteps;
     LineFace face;
     int place; // of those on the right of the face
     int ofVertex;
     int parts[kHexagon];
 };
-constexpr double kLineParts = 4096;
 constexpr LineFace kOnLine = LineFace::OnLine;
 constexpr LineFace kHalf = LineFace::Half;
 constexpr LineFace kBehind = LineFace::Behind;
 constexpr LineFace kBeyond = LineFace::Beyond;
-constexpr LineTableRow kLineTable[] = {
+constexpr TruncatedRow kTruncatedTable[] = {
 #include "lineRows.inl"
 };
 
@@ -35,45 +30,30 @@ int getMirrored(LineFace face, int place) {
     return face == kHalf ? 5 - place : (kHexagon + 1 - place) % kHexagon;
 }
 
-// The rows by number of steps, face and place.
-class LineRows {
-public:
-    LineRows() {
-        for (LineTableRow const &row : kLineTable) {
-            for (bool const isBackwards : {false, true}) {
-                int const place = isBackwards ? getMirrored(row.face, row.place) : row.place;
-                Row &made =
-                    _rows[std::size_t(row.numSteps)][std::size_t(row.face)][std::size_t(place)];
-                std::transform(row.parts, row.parts + kHexagon, made.weights,
-                               [](int part) { return part / kLineParts; });
-                made.hasMask =
-                    std::any_of(row.parts, row.parts + kHexagon, [](int part) { return part > 0; });
-                made.isBackwards = isBackwards;
-                made.ofVertex = row.ofVertex == kNone ? kNone : row.ofVertex / kLineParts;
-            }
+std::size_t getPlaceOfLine(int numSteps, LineFace face, int place) {
+    return std::size_t((numSteps * kNumLineFaces + int(face)) * kHexagon + place);
+}
+
+MaskTable const &getTruncatedRows() {
+    static MaskTable const kRows = [] {
+        MaskTable rows(getPlaceOfLine(kNumLineSteps, LineFace::OnLine, 0));
+        for (TruncatedRow const &row : kTruncatedTable) {
+            rows.Add(getPlaceOfLine(row.numSteps, row.face, row.place), row.ofVertex, row.parts);
         }
-    }
-
-    struct Row {
-        double weights[kHexagon] = {};
-        bool hasMask = false;
-        bool isBackwards = false;
-        double ofVertex = kNone;
-    };
-    Row const &Get(int numSteps, LineFace face, int place) const {
-        return _rows[std::size_t(numSteps)][std::size_t(face)][std::size_t(place)];
-    }
-
-private:
-    std::array<std::array<std::array<Row, kHexagon>, kNumLineFaces>, kNumLineSteps> _rows;
-};
+        return rows;
+    }();
+    return kRows;
+}
 
 } // namespace
 
-LineRow FindLineRow(int numSteps, LineFace face, int place) {
-    static LineRows const kRows;
-    LineRows::Row const &row = kRows.Get(numSteps, face, place);
-    return {row.hasMask ? row.weights : nullptr, row.isBackwards, row.ofVertex};
+MaskRow FindLineRow(int numSteps, LineFace face, int place) {
+    MaskTable const &rows = getTruncatedRows();
+    std::size_t const atRight = getPlaceOfLine(numSteps, face, place);
+    bool const isBackwards = !rows.Has(atRight);
+    return rows.Find(isBackwards ? getPlaceOfLine(numSteps, face, getMirrored(face, place))
+                                 : atRight,
+                     isBackwards);
 }
 
 } // namespace OpenSubdivHex::FarExt::internal

@@ -2,12 +2,11 @@
 #ifndef OPENSUBDIVHEX_FAR_EXT_RULES_LINE_ROW_H
 #define OPENSUBDIVHEX_FAR_EXT_RULES_LINE_ROW_H
 
+#include "quadPath.h"
+
 #include <cstdint>
 
 namespace OpenSubdivHex::FarExt::internal {
-
-/// The hexagonal steps behind a truncation that have masks of their own beside lines.
-inline constexpr int kNumLineSteps = 3;
 
 /// \brief Where a face lies beside a line whose edges are A and B in turn.  Where it is regular, there are two rows of
 /// hexagons.
@@ -22,18 +21,9 @@ enum class LineFace : std::uint16_t {
     OnOtherLine ///< any other face on an A edge: it has no masks, but faces that it makes have
 };
 
-/// \brief The masks of a corner beside a regular line.
-struct LineRow {
-    /// In a hexagon, or, of four weights, in half of one, from the corner on forward around the face, or backward; null
-    /// where there is none.
-    double const *mask;
-    bool isBackwards;
-    /// The weight of the corner's F-vertex in V' of its vertex; negative where there is none.
-    double vertexWeight;
-};
-
-/// Finds the masks of a corner at a level that \p numSteps hexagonal steps made behind a truncation.
-LineRow FindLineRow(int numSteps, LineFace face, int place);
+/// Finds the masks of a corner beside a regular line, at a level that \p numSteps hexagonal steps made behind a truncation.
+/// Of half a hexagon there are four weights.
+MaskRow FindLineRow(int numSteps, LineFace face, int place);
 
 } // namespace OpenSubdivHex::FarExt::internal
 

@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "quadPath.h"
 
-#include "far_ext/rules/mask.h"
+#include <opensubdiv/sdc/crease.h>
 
 #include <algorithm>
-#include <array>
 #include <cstddef>
 #include <cstring>
-#include <vector>
+#include <utility>
 
 namespace OpenSubdivHex::FarExt::internal {
 
@@ -18,14 +17,24 @@ constexpr int kNumPaths = kDigit * kDigit * kDigit;
 // Kinds of vertices, by number of faces.
 constexpr int kFourFaces = 0;
 constexpr int kOtherFaces = 4;
-constexpr int kNumVertices = kOtherFaces + 1;
+constexpr int kNoVertex = 5; // of flags beside a line alone
+constexpr int kNumVertices = kNoVertex + 1;
 constexpr int kNumEndings = kDigit * kDigit;
+// Kinds of flags beside lines; 0 is of no line.  At a line there are as many as quads there; away from one four, but for one
+// quad, which has none behind.
+constexpr int kNumAt = 1 + LineFlag::kMaxQuads * (LineFlag::kMaxQuads + 1) / 2;
+constexpr int kNumKindsAway = LineFlag::kNumKinds - LineFlag::kDown;
+constexpr int kFirstOfTwoAway = 1 + 2;
+constexpr int kNumAway = kFirstOfTwoAway + (LineFlag::kMaxQuads - 1) * kNumKindsAway;
 
-// One more than these are flags: a path, of as many digits as there were steps, and a vertex; or, in the constant
+// One more than these are flags: a path, of as many digits as there were steps, a vertex and lines; or, in the constant
 // levels, two digits, of a vertex or of a quad.
 struct Path {
+    int lines[2]; // kinds by LineRole
     int vertex;
     int digits;
+
+    int GetLine(LineRole role) const { return lines[int(role)]; }
 };
 
 int getKind(int numFaces) {
@@ -36,7 +45,34 @@ int getKind(int numFaces) {
                            : kOtherFaces;
 }
 
-Path getPath(QuadFlag flag) { return {(flag - 1) / kNumPaths, (flag - 1) % kNumPaths}; }
+int getLine(LineFlag flag) {
+    if (flag.GetRole() == LineRole::Away) {
+        int const kind = flag.kind - LineFlag::kDown;
+        return flag.numQuads == 1 ? 1 + kind
+                                  : kFirstOfTwoAway + (flag.numQuads - 2) * kNumKindsAway + kind;
+    }
+    return 1 + flag.numQuads * (flag.numQuads - 1) / 2 + flag.kind;
+}
+
+QuadFlag makeFlag(Path path) {
+    int const lines = path.GetLine(LineRole::Away) * kNumAt + path.GetLine(LineRole::At);
+    return QuadFlag(1 + kNumPaths * (lines * kNumVertices + path.vertex) + path.digits);
+}
+static_assert(1 + kNumPaths * kNumAway * kNumAt * kNumVertices <= 1 << 16);
+
+Path getPath(QuadFlag flag) {
+    int const kinds = (flag - 1) / kNumPaths;
+    int const lines = kinds / kNumVertices;
+    return {{lines / kNumAt, lines % kNumAt}, kinds % kNumVertices, (flag - 1) % kNumPaths};
+}
+
+int readDigits(char const *path) {
+    int digits = 0;
+    for (char const *digit = path; *digit != 0; ++digit) {
+        digits = digits * kDigit + (*digit - '0');
+    }
+    return digits;
+}
 
 // The path of one digit alone.
 constexpr int repeat(int digit, int count) {
@@ -53,67 +89,81 @@ struct TableRow {
     int ofVertex;        // of the corner's F-vertex in V'
     int parts[kHexagon]; // none of quads, which have the mask of all of them
 };
-constexpr double kParts = 4096;
 constexpr TableRow kTable[] = {
 #include "quadRows.inl"
 };
 
-// The rows of a number of steps, by place.
-class Rows {
-public:
-    Rows() {
-        for (auto &places : _places) {
-            places.fill(kNone);
-        }
+std::size_t getPlace(int numSteps, int vertex, int digits) {
+    return std::size_t((numSteps * kNumVertices + vertex) * kNumPaths + digits);
+}
+
+// The rows, those of constant levels by their endings.
+MaskTable const &getRows() {
+    static MaskTable const kRows = [] {
+        MaskTable rows(getPlace(kNumStepsToConstantMasks + 1, 0, 0));
         for (TableRow const &row : kTable) {
             char const *const star = std::strchr(row.path, '*');
-            char const *const path = star ? star + 1 : row.path;
-            int digits = 0;
-            for (char const *digit = path; *digit != 0; ++digit) {
-                digits = digits * kDigit + (*digit - '0');
-            }
-            int const numSteps = star ? kNumStepsToConstantMasks : int(std::strlen(path));
-            int const first =
-                star ? (row.path[0] == '3' ? kNumEndings : 0) : kNumPaths * getKind(row.numFaces);
-            int const place = first + digits;
-            _places[std::size_t(numSteps)][std::size_t(place)] = int(_rows.size());
-            Row &made = _rows.emplace_back();
-            std::transform(row.parts, row.parts + kHexagon, made.weights,
-                           [](int part) { return part / kParts; });
-            made.hasMask =
-                std::any_of(row.parts, row.parts + kHexagon, [](int part) { return part > 0; });
-            made.ofVertex = row.ofVertex / kParts;
-            made.position = int(_rows.size()) - 1;
+            std::size_t const place =
+                star ? getPlace(kNumStepsToConstantMasks, 0,
+                                (row.path[0] == '3' ? kNumEndings : 0) + readDigits(star + 1))
+                     : getPlace(int(std::strlen(row.path)), getKind(row.numFaces),
+                                readDigits(row.path));
+            rows.Add(place, row.ofVertex, row.parts);
         }
-    }
+        return rows;
+    }();
+    return kRows;
+}
 
-    struct Row {
-        double weights[kHexagon];
-        bool hasMask;
-        double ofVertex;
-        int position; // in the table
-    };
-    // Null where there is none.
-    Row const *Find(int numSteps, int place) const {
-        int const index = _places[std::size_t(numSteps)][std::size_t(place)];
-        return index == kNone ? nullptr : &_rows[std::size_t(index)];
-    }
-
-private:
-    static constexpr int kNone = -1;
-
-    static constexpr std::size_t kNumPlaces = std::size_t{kNumVertices} * kNumPaths;
-    std::array<std::array<int, kNumPlaces>, kNumStepsToConstantMasks + 1> _places;
-    std::vector<Row> _rows;
+struct LineTableRow {
+    int numQuads;
+    char flag;
+    char const *path;
+    int ofVertex;
+    int parts[kHexagon];
 };
+constexpr int kNone = MaskTable::kNone;
+constexpr LineTableRow kLineTable[] = {
+#include "quadLineRows.inl"
+};
+
+std::size_t getPlaceBesideLine(int numSteps, LineRole role, int line, int digits) {
+    int const ofRole = role == LineRole::Away ? line : kNumAway + line;
+    return std::size_t((numSteps * (kNumAway + kNumAt) + ofRole) * kNumPaths + digits);
+}
+
+MaskTable const &getRowsBesideLines() {
+    static MaskTable const kRows = [] {
+        constexpr char kFlags[] = "abcdvtVT"; // as LineFlag::Kind has them
+        MaskTable rows(getPlaceBesideLine(kNumLineSteps, LineRole::Away, 0, 0));
+        for (LineTableRow const &row : kLineTable) {
+            LineFlag const flag = {row.numQuads,
+                                   LineFlag::Kind(std::strchr(kFlags, row.flag) - kFlags)};
+            rows.Add(getPlaceBesideLine(int(std::strlen(row.path)), flag.GetRole(), getLine(flag),
+                                        readDigits(row.path)),
+                     row.ofVertex, row.parts);
+        }
+        return rows;
+    }();
+    return kRows;
+}
 
 QuadFlag append(QuadFlag flag, int numSteps, int digit) {
     if (flag == 0) {
         return 0;
     }
-    auto const [vertex, digits] = getPath(flag);
+    Path path = getPath(flag);
+    if (numSteps + 1 >= kNumLineSteps) {
+        path.lines[0] = path.lines[1] = 0;
+        if (path.vertex == kNoVertex) {
+            return 0;
+        }
+    }
+    int const vertex = path.vertex;
+    int const digits = path.digits;
     if (numSteps + 1 < kNumStepsToConstantMasks) {
-        return QuadFlag(1 + kNumPaths * vertex + digits * kDigit + digit);
+        path.digits = digits * kDigit + digit;
+        return makeFlag(path);
     }
     // The first digit of three, or of the ending, has to be what is before it.
     int const ending = digits % kNumEndings;
@@ -129,42 +179,113 @@ QuadFlag append(QuadFlag flag, int numSteps, int digit) {
     return QuadFlag(1 + (isAtVertex ? kNumEndings : 0) + ending % kDigit * kDigit + digit);
 }
 
-} // namespace
-
-QuadFlag MakeQuadFlag(int numFaces) { return QuadFlag(1 + kNumPaths * getKind(numFaces)); }
-
-QuadFlags AppendToQuadFlags(QuadFlags flags, int numSteps, int outDigit, int inDigit) {
-    return {append(flags.out, numSteps, outDigit), append(flags.in, numSteps, inDigit),
-            std::max(0.0f, flags.sharpness - 1)};
+// Infinite sharpness stays.
+LineSharpness sharpnessAfterStep(LineSharpness sharpness) {
+    auto const afterStep = [](float of) {
+        return OpenSubdiv::Sdc::Crease::IsInfinite(of) ? of : std::max(0.0f, of - 1);
+    };
+    return {afterStep(sharpness.line), afterStep(sharpness.cross)};
 }
 
-QuadRow FindQuadRow(int numSteps, QuadFlags flags) {
-    static Rows const kRows;
-    static constexpr QuadRow kNone = {nullptr, false, -1, -1};
-    if (flags.out == 0 || flags.in == 0 || numSteps == 0) {
-        return kNone;
+} // namespace
+
+QuadFlag MakeQuadFlag(int numFaces) { return makeFlag({{0, 0}, getKind(numFaces), 0}); }
+
+QuadFlag AddLineFlag(QuadFlag flag, LineFlag ofLine) {
+    Path path = flag == 0 ? Path{{0, 0}, kNoVertex, 0} : getPath(flag);
+    path.lines[int(ofLine.GetRole())] = getLine(ofLine);
+    return makeFlag(path);
+}
+
+bool QuadFlags::HasLine() const {
+    auto const isBesideLine = [](QuadFlag flag) { return flag > kNumPaths * kNumVertices; };
+    return isBesideLine(out) || isBesideLine(in);
+}
+
+QuadFlags AppendToQuadFlags(QuadFlags flags, int numSteps, int outDigit, int inDigit) {
+    QuadFlags result = {append(flags.out, numSteps, outDigit),
+                        append(flags.in, numSteps, inDigit),
+                        std::max(0.0f, flags.sharpness - 1),
+                        {},
+                        {}};
+    if (result.HasLine()) {
+        for (LineRole const role : kLineRoles) {
+            result.outLines[int(role)] = sharpnessAfterStep(flags.outLines[int(role)]);
+            result.inLines[int(role)] = sharpnessAfterStep(flags.inLines[int(role)]);
+        }
     }
-    auto const [vertex, pathOut] = getPath(flags.out);
-    int const pathIn = getPath(flags.in).digits;
-    int const path = std::min(pathOut, pathIn);
-    bool const isBackwards = pathIn < pathOut;
-    auto const make = [isBackwards](Rows::Row const *row) {
-        return row ? QuadRow{row->hasMask ? &row->weights : nullptr, isBackwards, row->ofVertex,
-                             row->position}
-                   : kNone;
-    };
+    return result;
+}
+
+MaskRow FindQuadRow(int numSteps, QuadFlags flags) {
+    if (flags.out == 0 || flags.in == 0 || numSteps == 0) {
+        return kNoMaskRow;
+    }
+    Path const out = getPath(flags.out);
+    Path const in = getPath(flags.in);
+    int const vertex = out.vertex;
+    if (vertex == kNoVertex || in.vertex == kNoVertex) {
+        return kNoMaskRow;
+    }
+    int const path = std::min(out.digits, in.digits);
+    bool const isBackwards = in.digits < out.digits;
+    MaskTable const &rows = getRows();
     if (numSteps >= kNumStepsToConstantMasks) {
-        bool const isSame = pathOut / kNumEndings == pathIn / kNumEndings;
-        return isSame ? make(kRows.Find(kNumStepsToConstantMasks, path)) : kNone;
+        bool const isSame = out.digits / kNumEndings == in.digits / kNumEndings;
+        return isSame ? rows.Find(getPlace(kNumStepsToConstantMasks, 0, path), isBackwards)
+                      : kNoMaskRow;
     }
     // Beside other vertices, and beside their neighbors, the rows of four quads are not for these.
     bool const isBeside =
         path == repeat(3, numSteps) || path == repeat(3, numSteps - 1) * kDigit + 1;
     if (vertex == kOtherFaces && isBeside) {
-        return kNone;
+        return kNoMaskRow;
     }
-    Rows::Row const *const ofVertex = kRows.Find(numSteps, kNumPaths * vertex + path);
-    return make(ofVertex ? ofVertex : kRows.Find(numSteps, path));
+    std::size_t const ofVertex = getPlace(numSteps, vertex, path);
+    return rows.Find(rows.Has(ofVertex) ? ofVertex : getPlace(numSteps, kFourFaces, path),
+                     isBackwards);
+}
+
+QuadLineRow FindQuadLineRow(int numSteps, QuadFlags flags, LineRole role) {
+    constexpr QuadLineRow kNoRow = {kNoMaskRow, false, 0};
+    float const share =
+        std::min(flags.outLines[int(role)].GetShare(), flags.inLines[int(role)].GetShare());
+    if (flags.out == 0 || flags.in == 0 || numSteps >= kNumLineSteps || share == 0) {
+        return kNoRow;
+    }
+    Path const paths[2] = {getPath(flags.out), getPath(flags.in)};
+    std::pair<int, int> const out = {paths[0].GetLine(role), paths[0].digits};
+    std::pair<int, int> const in = {paths[1].GetLine(role), paths[1].digits};
+    if (out.first == 0 || in.first == 0) {
+        return kNoRow;
+    }
+    bool const isBackwards = in < out;
+    auto const [line, digits] = isBackwards ? in : out;
+    MaskTable const &rows = getRowsBesideLines();
+    // Away from one quad flags are at a regular line, too.
+    bool const isBesideOne = role == LineRole::Away && line < kFirstOfTwoAway;
+    std::size_t place = getPlaceBesideLine(numSteps, role, line, digits);
+    if (role == LineRole::Away && !rows.Has(place)) {
+        int const kind = (line - 1) % 2;
+        bool const isBehind = !isBesideOne && (line - kFirstOfTwoAway) % kNumKindsAway > 1;
+        if (isBesideOne) {
+            LineFlag const atLine = {2, LineFlag::Kind(LineFlag::kAtLine + kind)};
+            place = getPlaceBesideLine(numSteps, LineRole::At, getLine(atLine), digits);
+        } else if (!isBehind) {
+            place = getPlaceBesideLine(numSteps, role, kFirstOfTwoAway + kind, digits);
+        }
+    }
+    if (!rows.Has(place)) {
+        return kNoRow;
+    }
+    // The E-face of an edge of the line, and what F-faces are made of it.
+    bool isAlong = isBesideOne && line == getLine({1, LineFlag::kDown});
+    for (int numQuads = 1; numQuads <= LineFlag::kMaxQuads && role == LineRole::At; ++numQuads) {
+        isAlong = isAlong || line == getLine({numQuads, LineFlag::kAtLine});
+    }
+    int const behindFirst = numSteps == kNumLineSteps - 1 ? digits % kDigit : 0;
+    bool const isOfHalf = isAlong && digits > 0 && behindFirst == 0;
+    return {rows.Find(place, isBackwards), isOfHalf, double(share)};
 }
 
 } // namespace OpenSubdivHex::FarExt::internal

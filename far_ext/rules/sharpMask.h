@@ -10,26 +10,37 @@ struct CreaseMask {
     double right;
 };
 
+/// Masks along lines by level.
+enum class CreaseLevel {
+    First, ///< of the first steps with FaceMask::Smooth, which has masks beside the line for these
+    Plain, ///< of any step
+    Bounded, ///< all points of a parabola move alike, which bounds the curvature of the curve
+};
+
 /// \brief The mask along a crease or sharp boundary, in a hexagonal step.
 ///
 /// The sharp edges at V are of phase A, one unit long in the lattice, or *long*: diagonals and B boundaries, of
 /// two units.  The masks reproduce linear functions:
 ///
-/// | edges   | A and A                    | A and B                     | B and B                       |
-/// |---------|----------------------------|-----------------------------|-------------------------------|
-/// | V'      | (6 V + V_l + V_r)/8        | (5 V + 2 V_A + V_B)/8       | (26 V + 3 V_l + 3 V_r)/32     |
-/// | bounded | (2 V + 3 V_l + 3 V_r)/8    | as above                    | as above                      |
+/// | edges   | A and A                    | A and B                     | B and B                           |
+/// |---------|----------------------------|-----------------------------|-----------------------------------|
+/// | Plain   | (6 V + V_l + V_r)/8        | (5 V + 2 V_A + V_B)/8       | (26 V + 3 V_l + 3 V_r)/32         |
+/// | Bounded | (2 V + 3 V_l + 3 V_r)/8    | as above                    | as above                          |
+/// | First   | V                          | as above                    | (98 V + 15 V_l + 15 V_r)/128      |
 ///
-/// \param isBounded  whether all points of a parabola shall move alike, which bounds the curvature of the curve;
-///                   otherwise it grows by sqrt(3/2) per level at vertices of two A edges
-constexpr CreaseMask ComputeCreaseMask(bool isLeftLong, bool isRightLong, bool isBounded) {
+/// With Plain alone curvature grows by sqrt(3/2) per level at vertices of two A edges.  With First the points of the
+/// line spread along it as those inside do, behind the first step by 1/4 of the square of an edge.
+constexpr CreaseMask ComputeCreaseMask(bool isLeftLong, bool isRightLong, CreaseLevel level) {
     if (isLeftLong && isRightLong) {
-        return {3.0 / 32, 3.0 / 32};
+        return level == CreaseLevel::First ? CreaseMask{15.0 / 128, 15.0 / 128}
+                                           : CreaseMask{3.0 / 32, 3.0 / 32};
     }
     if (isLeftLong || isRightLong) {
         return {isLeftLong ? 1.0 / 8 : 2.0 / 8, isRightLong ? 1.0 / 8 : 2.0 / 8};
     }
-    return isBounded ? CreaseMask{3.0 / 8, 3.0 / 8} : CreaseMask{1.0 / 8, 1.0 / 8};
+    return level == CreaseLevel::First     ? CreaseMask{0, 0}
+           : level == CreaseLevel::Bounded ? CreaseMask{3.0 / 8, 3.0 / 8}
+                                           : CreaseMask{1.0 / 8, 1.0 / 8};
 }
 
 /// \brief The masks of Smooth in the one face that a vertex V of a smooth sharp line has on a side of the line.

@@ -5,6 +5,7 @@
 #include "hierarchy.h"
 #include "indexSet.h"
 #include "parallel.h"
+#include "quadFeatures.h"
 #include "sharpFeatures.h"
 #include "vertexFan.h"
 
@@ -158,6 +159,7 @@ void BuildFVarChannel(Level const &mesh, Index numValues, Buffer<Index> faceValu
     }
     findVertexSharpness(sharpness, level);
     ComputeSharpMasks({sdcOptions, FaceMask::Average}, level); // with others level 0 has the same
+    FindBaseQuadCorners(level);
     channel.faceValues = std::move(faceValues);
 }
 

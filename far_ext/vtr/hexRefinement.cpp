@@ -56,6 +56,7 @@ void RefineHexagonally(Level const &parent, TagOptions tagOptions, bool fullTopo
     BeginRefinement(parent, GetHexagonalSizes(GetSizes(parent)), fullTopology, refinement, child);
     child.isHexagonal = true;
     child.numHexagonalSteps = parent.numHexagonalSteps + 1;
+    child.hasFirstLineMasks = parent.hasFirstLineMasks;
     child.numVVertices = parent.numVertices;
     child.numVertsOfAnyValence = parent.numVertsOfAnyValence;
     child.numVFaces = 0;

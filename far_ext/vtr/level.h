@@ -435,6 +435,8 @@ struct Level : CornerTags {
     Index numFFaces = 0;       ///< the first faces, made of faces; they have ...
     Index numFFaceCorners = 0; ///< ... the first corners, and from each of these an edge
     Index numVFaces = 0;       ///< the last faces, made for vertices
+    /// Whether no step of another scheme came before: then lines have masks of their own in the first steps.
+    bool hasFirstLineMasks = true;
     /// The vertices of the last level that was not made by a hexagonal refinement; those behind
     /// them have three faces, or two at a boundary.
     Index numVertsOfAnyValence = 0;

@@ -521,6 +521,7 @@ void PolygonRefiner::Refine(bool fullTopology, Refinement &refinement, Level &ch
     BeginRefinement(_parent, _sizes, fullTopology, refinement, child);
     child.isHexagonal = false;
     child.numHexagonalSteps = isHexagonal() ? _parent.numHexagonalSteps + 1 : 0;
+    child.hasFirstLineMasks = isHexagonal() && _parent.hasFirstLineMasks;
     child.numVVertices = Index(_vertexCounts.back().vertices);
     child.numVFaces = Index(_vertexCounts.back().faces);
     relate(refinement);

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <unordered_map>
 #include <vector>
 
 namespace OpenSubdivHex::FarExt::internal {
@@ -17,6 +18,7 @@ namespace {
 using Far::Index;
 using Sdc::Crease;
 
+// The flags of all corners at a vertex inside the mesh that is no line's alone.
 QuadFlags makeBaseFlags(Level const &level, Index vert) {
     Far::ConstIndexArray const faces = level.GetVertexFaces(vert);
     QuadFlag const flag = FindQuadFlag(faces.size(), [&](int i) {
@@ -36,7 +38,200 @@ QuadFlags makeBaseFlags(Level const &level, Index vert) {
     if (Crease::IsInfinite(sharpness)) {
         return {};
     }
-    return {flag, flag, sharpness};
+    return {flag, flag, sharpness, {}, {}};
+}
+
+// Finds the corners beside lines of a level that no step has made.
+class QuadLineFinder {
+public:
+    explicit QuadLineFinder(Level &level) : _level(level) {}
+
+    void Find();
+
+private:
+    // The three sharpest edges at a vertex; those of no line at one that is not manifold.
+    struct SharpEdges {
+        float sharpness[3]; // descending
+        int locals[2];      // of the line, ascending
+        float GetCross(float ofVertex) const { return std::max(sharpness[2], ofVertex); }
+    };
+    float getSharpness(Index edge) const {
+        if (_level.IsBoundary(edge)) {
+            return _level.edgeFaces[edge][1] == kSharpBoundaryA ? Crease::SHARPNESS_INFINITE : 0;
+        }
+        return _level.GetEdgeSharpness(edge);
+    }
+    SharpEdges findSharpEdges(Index vert) const;
+    void add(Index corner, LineFlag out, LineFlag in, LineSharpness sharpness);
+    void addSides(Index vert);
+    void addSide(Index vert, int begin, int numFaces, LineSharpness sharpness);
+    void addOtherEnd(Index corner, Index face, Index edge, LineFlag::Kind down, int numQuads,
+                     LineSharpness sharpness);
+    float addBesideOne(Index corner, Index face, bool isOut, LineSharpness sharpness);
+    bool isOnQuads(Index vert, int begin, int numFaces) const;
+    Index getFaceOf(Index vert, int i) const {
+        Far::ConstIndexArray const faces = _level.GetVertexFaces(vert);
+        return faces[i % faces.size()];
+    }
+
+    Level &_level;
+    std::vector<QuadCorner> _found;
+    std::unordered_map<Index, std::size_t> _indices; // in _found, by corner
+};
+
+QuadLineFinder::SharpEdges QuadLineFinder::findSharpEdges(Index vert) const {
+    SharpEdges result = {{0, 0, 0}, {-1, -1}};
+    Far::ConstIndexArray const edges = _level.GetVertexEdges(vert);
+    for (int i = 0; i < edges.size(); ++i) {
+        float const sharpness = getSharpness(edges[i]);
+        int place = 2;
+        while (place >= 0 && result.sharpness[place] < sharpness) {
+            --place;
+        }
+        for (int k = 2; k > place + 1; --k) {
+            result.sharpness[k] = result.sharpness[k - 1];
+        }
+        if (place < 1) {
+            result.locals[1] = place < 0 ? result.locals[0] : i;
+        }
+        if (place < 0) {
+            result.locals[0] = i;
+        }
+        if (place < 2) {
+            result.sharpness[place + 1] = sharpness;
+        }
+    }
+    std::sort(result.locals, result.locals + 2);
+    return result;
+}
+
+bool QuadLineFinder::isOnQuads(Index vert, int begin, int numFaces) const {
+    constexpr int kQuad = 4;
+    for (int i = begin; i < begin + numFaces; ++i) {
+        Index const face = getFaceOf(vert, i);
+        if (_level.GetFaceSize(face) != kQuad || _level.IsHalfFace(face)) {
+            return false;
+        }
+    }
+    return true;
+}
+
+// Of two lines in one role the one with the larger share has it.
+void QuadLineFinder::add(Index corner, LineFlag out, LineFlag in, LineSharpness sharpness) {
+    auto const [found, isNew] = _indices.try_emplace(corner, _found.size());
+    if (isNew) {
+        _found.push_back({corner, makeBaseFlags(_level, _level.faceVerts[corner])});
+    }
+    QuadFlags &flags = _found[found->second].flags;
+    int const role = int(out.GetRole());
+    if (flags.outLines[role].GetShare() > sharpness.GetShare()) {
+        return;
+    }
+    flags.out = AddLineFlag(flags.out, out);
+    flags.in = AddLineFlag(flags.in, in);
+    flags.outLines[role] = flags.inLines[role] = sharpness;
+}
+
+// Face i of a vertex lies between its edges i and i + 1.
+void QuadLineFinder::addSides(Index vert) {
+    SharpEdges const edges = findSharpEdges(vert);
+    LineSharpness const sharpness = {edges.sharpness[1],
+                                     edges.GetCross(_level.GetVertexSharpness(vert))};
+    if (!(sharpness.line > sharpness.cross) || _level.IsNonManifold(vert)) {
+        return;
+    }
+    int const numFaces = _level.GetNumVertexFaces(vert);
+    int const ofFirst = edges.locals[1] - edges.locals[0];
+    addSide(vert, edges.locals[0], ofFirst, sharpness);
+    if (!_level.IsBoundary(_level.GetVertexEdges(vert)[0])) {
+        addSide(vert, edges.locals[1], numFaces - ofFirst, sharpness);
+    }
+}
+
+void QuadLineFinder::addSide(Index vert, int begin, int numFaces, LineSharpness sharpness) {
+    if (numFaces > LineFlag::kMaxQuads || !isOnQuads(vert, begin, numFaces)) {
+        return;
+    }
+    // Flags are counted from both ends of the line.
+    int const numFlags = 2 * numFaces;
+    auto const makeFlag = [&](int i) {
+        return LineFlag{numFaces, LineFlag::Kind(std::min(i, numFlags - 1 - i))};
+    };
+    Far::ConstIndexArray const edges = _level.GetVertexEdges(vert);
+    for (int i = 0; i < numFaces; ++i) {
+        Index const face = getFaceOf(vert, begin + i);
+        Index const edge = edges[(begin + i) % edges.size()];
+        Index const corner = _level.GetVertexCorner(_level.vertFirstFace[vert] +
+                                                    (begin + i) % _level.GetNumVertexFaces(vert));
+        LineSharpness own = sharpness;
+        if (numFaces == 2) {
+            own.cross = std::max(own.cross, addBesideOne(corner, face, i == 0, sharpness));
+        }
+        add(corner, makeFlag(2 * i), makeFlag(2 * i + 1), own);
+        // The other ends of the edges of this face but those of the line.
+        bool const isAtLine = i == 0 || i == numFaces - 1;
+        LineFlag::Kind const down = isAtLine ? LineFlag::kDown : LineFlag::kDownBehind;
+        if (i > 0) {
+            addOtherEnd(_level.GetNextCorner(face, corner), face, edge, down, numFaces, sharpness);
+        }
+        if (i < numFaces - 1) {
+            Index const before = _level.GetPrevCorner(face, corner);
+            addOtherEnd(before, face, _level.faceEdges[before], down, numFaces, sharpness);
+        }
+    }
+}
+
+// The corner in a quad that a vertex next to it on the line has alone: with its edge that begins there, or with the one
+// that ends there.  Returns how sharp the line is at that vertex; 0 where it has other faces.
+float QuadLineFinder::addBesideOne(Index corner, Index face, bool isOut, LineSharpness sharpness) {
+    Index const atOne =
+        isOut ? _level.GetNextCorner(face, corner) : _level.GetPrevCorner(face, corner);
+    Index const vert = _level.faceVerts[atOne];
+    Index const edge = _level.faceEdges[isOut ? atOne : _level.GetPrevCorner(face, atOne)];
+    SharpEdges const edges = findSharpEdges(vert);
+    sharpness.line = std::min({sharpness.line, edges.sharpness[1], getSharpness(edge)});
+    sharpness.cross = std::max(sharpness.cross, edges.GetCross(_level.GetVertexSharpness(vert)));
+    if (!(sharpness.line > sharpness.cross) || _level.IsNonManifold(vert)) {
+        return 0;
+    }
+    add(corner, {1, isOut ? LineFlag::kDown : LineFlag::kTop},
+        {1, isOut ? LineFlag::kTop : LineFlag::kDown}, sharpness);
+    return sharpness.line;
+}
+
+// The corner at the other end of an edge from the line: not where its other edge leads to a line that is as sharp, or it is
+// at one itself.
+void QuadLineFinder::addOtherEnd(Index corner, Index face, Index edge, LineFlag::Kind down,
+                                 int numQuads, LineSharpness sharpness) {
+    Index const vert = _level.faceVerts[corner];
+    QuadFlags const inside = makeBaseFlags(_level, vert);
+    if (inside.out != MakeQuadFlag(4)) {
+        return;
+    }
+    bool const isOut = _level.faceEdges[corner] == edge;
+    Index const beyond = _level.faceVerts[isOut ? _level.GetPrevCorner(face, corner)
+                                                : _level.GetNextCorner(face, corner)];
+    sharpness.cross =
+        std::max({sharpness.cross, inside.sharpness, _level.GetVertexSharpness(beyond),
+                  findSharpEdges(beyond).sharpness[0]});
+    if (!(sharpness.line > sharpness.cross)) {
+        return;
+    }
+    LineFlag const ofDown = {numQuads, down};
+    LineFlag const ofTop = {numQuads, LineFlag::Kind(down + 1)};
+    add(corner, isOut ? ofDown : ofTop, isOut ? ofTop : ofDown, sharpness);
+}
+
+void QuadLineFinder::Find() {
+    for (SharpVertex const &sharp : _level.sharpVerts) {
+        addSides(sharp.vert);
+    }
+    std::sort(_found.begin(), _found.end(),
+              [](QuadCorner const &x, QuadCorner const &y) { return x.corner < y.corner; });
+    _level.quadCorners.clear();
+    for (QuadCorner const &corner : _found) {
+        _level.quadCorners.push_back(corner);
+    }
 }
 
 class QuadFinder {
@@ -77,7 +272,8 @@ private:
     bool readParent();
     std::vector<Index> listFaces() const;
     QuadFlags getParent(Index corner) const {
-        return _flags.empty() ? _parent.quadCorners.GetFlags(corner) : _flags[std::size_t(corner)];
+        QuadFlags const flags = _parent.quadCorners.GetFlags(corner);
+        return _flags.empty() || flags.HasAny() ? flags : _flags[std::size_t(corner)];
     }
     QuadFlags append(QuadFlags flags, int outDigit, int inDigit) const {
         return AppendToQuadFlags(flags, _parent.numHexagonalSteps, outDigit, inDigit);
@@ -88,7 +284,8 @@ private:
     Refinement const &_refinement;
     Level const &_parent;
     Level &_level;
-    Buffer<QuadFlags> _flags; // of the parent, by corner, before the first step
+    Buffer<QuadFlags>
+        _flags; // of the parent, by corner, before the first step, but for those beside lines
 };
 
 // Returns whether there are any flags.
@@ -109,7 +306,8 @@ bool QuadFinder::readParent() {
     ParallelFor(_parent.numCorners, [&](Index corner) {
         _flags[std::size_t(corner)] = ofVerts[std::size_t(_parent.faceVerts[corner])];
     });
-    return std::any_of(ofVerts.begin(), ofVerts.end(),
+    return !_parent.quadCorners.empty() ||
+           std::any_of(ofVerts.begin(), ofVerts.end(),
                        [](QuadFlags flags) { return flags.HasAny(); });
 }
 
@@ -145,31 +343,61 @@ void QuadFinder::forEachCorner(Index face, FUNCTION const &function) const {
         }
         return;
     }
-    if (face >= _level.numFaces - _level.numVFaces || size != HexIndexing::kNumEFaceCorners) {
+    if (face >= _level.numFaces - _level.numVFaces ||
+        (size != HexIndexing::kNumEFaceCorners && !_level.IsHalfFace(face))) {
         return;
     }
     Index const edge = _refinement.GetEFaceParent(face);
     QuadFlags made[HexIndexing::kNumEFaceCorners];
-    for (int side = 0; side < 2; ++side) {
-        EFaceSide const &places = side == 0 ? kEFaceSideA : kEFaceSideB;
+    bool const isHalf = size != HexIndexing::kNumEFaceCorners;
+    for (int side = 0; side < (isHalf ? 1 : 2); ++side) {
+        EFaceSide const &places = isHalf      ? kBoundaryEFaceSide
+                                  : side == 0 ? kEFaceSideA
+                                              : kEFaceSideB;
         Index const start = _parent.GetSideCorner(edge, side);
         Index const end = _parent.GetNextCorner(_parent.edgeFaces[edge][side], start);
-        Index const otherStart = _parent.GetSideCorner(edge, 1 - side);
-        Index const otherEnd = _parent.GetNextCorner(_parent.edgeFaces[edge][1 - side], otherStart);
         QuadFlags const atStart = getParent(start);
         QuadFlags const atEnd = getParent(end);
-        QuadFlags const beyond = getParent(otherEnd); // at the start, on the other side
-        float const sharpness = std::max(atStart.sharpness, beyond.sharpness);
-        made[places.startVertex] = append({beyond.in, atStart.out, sharpness}, 3, 3);
-        made[places.endFVertex] = append({atEnd.in, atEnd.in, atEnd.sharpness}, 1, 2);
-        made[places.startFVertex] = append({atStart.out, atStart.out, atStart.sharpness}, 2, 1);
+        // A flag with both edges of a corner, or with one of them.
+        auto const atOut = [](QuadFlags const &of) {
+            QuadFlags flags = of;
+            flags.in = of.out;
+            std::copy_n(of.outLines, 2, flags.inLines);
+            return flags;
+        };
+        auto const atIn = [](QuadFlags const &of) {
+            QuadFlags flags = of;
+            flags.out = of.in;
+            std::copy_n(of.inLines, 2, flags.outLines);
+            return flags;
+        };
+        QuadFlags const fromStart = atOut(atStart);
+        QuadFlags const fromEnd = atIn(atEnd);
+        made[places.endFVertex] = append(fromEnd, 1, 2);
+        made[places.startFVertex] = append(fromStart, 2, 1);
+        if (isHalf) {
+            made[places.startVertex] = append(fromStart, 3, 3);
+            made[places.startVertex].out = 0;
+            made[places.endVertex] = append(fromEnd, 3, 3);
+            made[places.endVertex].in = 0;
+            continue;
+        }
+        Index const otherStart = _parent.GetSideCorner(edge, 1 - side);
+        Index const otherEnd = _parent.GetNextCorner(_parent.edgeFaces[edge][1 - side], otherStart);
+        QuadFlags atVertex = atIn(getParent(otherEnd)); // on the other side
+        atVertex.in = fromStart.in;
+        std::copy_n(fromStart.inLines, 2, atVertex.inLines);
+        atVertex.sharpness = std::max(atVertex.sharpness, atStart.sharpness);
+        made[places.startVertex] = append(atVertex, 3, 3);
     }
-    for (int local = 0; local < HexIndexing::kNumEFaceCorners; ++local) {
+    for (int local = 0; local < size; ++local) {
         function(first + local, made[local]);
     }
 }
 
 } // namespace
+
+void FindBaseQuadCorners(Level &level) { QuadLineFinder(level).Find(); }
 
 void FindQuadCorners(FaceMask faceMask, Refinement const &refinement, Level &level) {
     level.quadCorners.clear();

@@ -24,6 +24,7 @@ void BeginRefinement(Level const &parent, LevelSizes const &sizes, bool fullTopo
     child.numSharpBoundariesB = Index(sizes.sharpBoundariesB);
     child.numFFaces = parent.numFaces;
     child.numFFaceCorners = parent.numCorners;
+    child.hasFirstLineMasks = false;
     child.partedVerts.clear();
     child.crossedFaces = parent.crossedFaces; // F-faces have the indices of their parents
     child.hasFullTopology = fullTopology;

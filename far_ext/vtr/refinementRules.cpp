@@ -61,7 +61,7 @@ struct TagRange {
 
 // The masks beside the sharpest line at a corner, and their share: as much as it is sharper than any other line there.
 struct LineShare {
-    LineRow row = {nullptr, false, -1};
+    MaskRow row = kNoMaskRow;
     LineFace face = LineFace::OnLine;
     float share = 0;
 };
@@ -217,19 +217,24 @@ void RefinementRules::makeRuledVertices(bool hasIrregular) {
             }
         }
     };
+    // Level 0 has the tags of all masks, and edges of phase A alone: with CreaseLevel::First lines stay.
+    bool const doLinesStay = _step == StepType::Hexagonal && _faceMask == FaceMask::Smooth &&
+                             _level.hasFirstLineMasks && _level.numHexagonalSteps == 0;
     for (SharpVertex const &sharp : _level.sharpVerts) {
         addIrregularBefore(sharp.vert);
+        bool const stays = doLinesStay && !_level.IsNonManifold(sharp.vert);
         VertexRule rule = {sharp.faceWeight, 0, {}, {}, nullptr};
         auto const add = [&rule](Index source, double weight) {
             rule.sources[rule.numSources] = source;
             rule.weights[rule.numSources++] = weight;
         };
         for (int i = 0; i < 2; ++i) {
-            if (sharp.neighborWeights[i] > 0) {
+            if (sharp.neighborWeights[i] > 0 && !stays) {
                 add(sharp.neighbors[i], sharp.neighborWeights[i]);
             }
         }
-        add(sharp.vert, sharp.vertexWeight);
+        add(sharp.vert,
+            sharp.vertexWeight + (stays ? sharp.neighborWeights[0] + sharp.neighborWeights[1] : 0));
         if (nextIrregular != endIrregular && nextIrregular->vert == sharp.vert) {
             addIrregular(*nextIrregular++, sharp.smoothShare, rule);
         }
@@ -239,7 +244,8 @@ void RefinementRules::makeRuledVertices(bool hasIrregular) {
 }
 
 // Where the tags of all corners of a vertex tell the weights of its F-vertices, these have the least share of the
-// corners; with paths, all have that which the vertex's sharpness leaves.
+// corners; with paths, all have that which the vertex's sharpness leaves.  Then weights beside lines of quads take their
+// share of each F-vertex that has one.
 void RefinementRules::makeVertexWeights() {
     if ((_level.quadCorners.empty() && _level.lineRowCorners.empty()) || _level.numVertices == 0) {
         return;
@@ -252,9 +258,35 @@ void RefinementRules::makeVertexWeights() {
     _vertexWeights.assign(1 + kFVertexFaces, plain.faceWeight);
     _vertexWeights[0] = plain.vertexWeight;
     std::map<std::vector<double>, int> positions;
+    struct Ruled {
+        VertexRule rule;
+        int position; // of its weights
+    };
+    std::map<Index, Ruled> ruled; // those with neighbors
+    // The rule so far, with the weights of the vertex and of its F-vertices; to be used before another is set.
+    auto const getRule = [&](Index vert) -> VertexRule {
+        if (auto const found = ruled.find(vert); found != ruled.end()) {
+            VertexRule rule = found->second.rule;
+            rule.faceWeights = _vertexWeights.data() + found->second.position + 1;
+            return rule;
+        }
+        int const position = GetVertexWeights(vert);
+        return position == kPlain ? GetVertexRule(vert) : weightedRule(vert, position);
+    };
+    auto const setRule = [&](Index vert, VertexRule const &rule,
+                             std::vector<double> const &weights) {
+        auto const [found, isNew] = positions.try_emplace(weights, int(_vertexWeights.size()));
+        if (isNew) {
+            _vertexWeights.insert(_vertexWeights.end(), weights.begin(), weights.end());
+        }
+        if (rule.numSources > 1) {
+            ruled[vert] = {rule, found->second};
+        } else {
+            _weightsOfVerts.resize(std::max(_weightsOfVerts.size(), std::size_t(vert) + 1), kPlain);
+            _weightsOfVerts[std::size_t(vert)] = found->second;
+        }
+    };
     std::vector<double> weights;
-    std::vector<RuledVertex> ruled;
-    std::vector<int> positionsOfRuled;
     auto const setWeights = [&](Index vert, float smoothShare, auto const &findOf) {
         weights.assign(1, 1.0);
         double share = smoothShare;
@@ -272,7 +304,7 @@ void RefinementRules::makeVertexWeights() {
         }
         VertexRule rule = {0, 1, {vert}, {weights[0]}, nullptr};
         if (share < 1) {
-            rule = GetVertexRule(vert);
+            rule = getRule(vert);
             for (double &weight : rule.weights) {
                 weight *= 1 - share;
             }
@@ -280,20 +312,34 @@ void RefinementRules::makeVertexWeights() {
             ofVertex += share * weights[0];
             weights[0] = ofVertex;
             for (std::size_t j = 1; j < weights.size(); ++j) {
-                weights[j] = rule.faceWeight + share * (weights[j] - rule.faceWeight);
+                double const before = rule.GetFaceWeight(int(j) - 1);
+                weights[j] = before + share * (weights[j] - before);
             }
         }
-        auto const [found, isNew] = positions.try_emplace(weights, int(_vertexWeights.size()));
-        if (isNew) {
-            _vertexWeights.insert(_vertexWeights.end(), weights.begin(), weights.end());
+        setRule(vert, rule, weights);
+    };
+    auto const setBesideLine = [&](Index vert) {
+        SharpVertex const *const sharp = _level.FindSharpVertex(vert);
+        double const smoothShare = sharp ? sharp->smoothShare : 1;
+        VertexRule rule = getRule(vert);
+        double &ofVertex = rule.weights[rule.numSources - 1];
+        weights.assign(1, 0.0);
+        for (int i = 0; i < _level.GetNumVertexFaces(vert); ++i) {
+            QuadFlags const flags =
+                _level.quadCorners.GetFlags(_level.GetVertexCorner(_level.vertFirstFace[vert] + i));
+            double const before = rule.GetFaceWeight(i);
+            double change = 0;
+            for (LineRole const role : kLineRoles) {
+                QuadLineRow const own = FindQuadLineRow(_level.numHexagonalSteps, flags, role);
+                if (own.row.vertexWeight >= 0) {
+                    change += smoothShare * own.share * (own.row.vertexWeight - before - change);
+                }
+            }
+            weights.push_back(before + change);
+            ofVertex -= change;
         }
-        if (rule.numSources > 1) {
-            ruled.push_back({vert, rule});
-            positionsOfRuled.push_back(found->second);
-        } else {
-            _weightsOfVerts.resize(std::max(_weightsOfVerts.size(), std::size_t(vert) + 1), kPlain);
-            _weightsOfVerts[std::size_t(vert)] = found->second;
-        }
+        weights[0] = ofVertex;
+        setRule(vert, rule, weights);
     };
 
     auto const findOfQuad = [this](Index corner) -> OfCorner {
@@ -301,24 +347,27 @@ void RefinementRules::makeVertexWeights() {
         if (!flags.HasAny()) {
             return {};
         }
-        QuadRow const row = FindQuadRow(_level.numHexagonalSteps, flags);
+        MaskRow const row = FindQuadRow(_level.numHexagonalSteps, flags);
         return {float(row.vertexWeight), flags.GetShare()};
     };
-    auto const listVertices = [this](auto const &tags) {
+    auto const listVertices = [this](auto const &tags, auto const &matters) {
         std::vector<Index> verts;
         verts.reserve(tags.size());
         for (auto const &tag : tags) {
-            verts.push_back(_level.faceVerts[tag.corner]);
+            if (matters(tag)) {
+                verts.push_back(_level.faceVerts[tag.corner]);
+            }
         }
         SortUnique(verts);
         return verts;
     };
+    auto const allMatter = [](auto const &) { return true; };
     // In the constant levels few vertices have such weights, and have rules of their own.
     if (_level.numHexagonalSteps >= kNumStepsToConstantMasks) {
-        for (Index const vert : listVertices(_level.quadCorners)) {
+        for (Index const vert : listVertices(_level.quadCorners, allMatter)) {
             setWeights(vert, 1, findOfQuad);
         }
-    } else if (!_level.quadCorners.empty()) {
+    } else if (!_level.quadCorners.empty() && _level.numHexagonalSteps > 0) {
         Buffer<OfCorner> ofCorners;
         ofCorners.Resize(std::size_t(_level.numCorners));
         ParallelFor(_level.numCorners,
@@ -327,27 +376,39 @@ void RefinementRules::makeVertexWeights() {
             setWeights(vert, 1, [&](Index corner) { return ofCorners[std::size_t(corner)]; });
         }
     }
+    if (_level.quadCorners.HasLines()) {
+        auto const hasWeight = [this](QuadCorner const &quad) {
+            return std::any_of(std::begin(kLineRoles), std::end(kLineRoles), [&](LineRole role) {
+                return FindQuadLineRow(_level.numHexagonalSteps, quad.flags, role)
+                           .row.vertexWeight >= 0;
+            });
+        };
+        for (Index const vert : listVertices(_level.quadCorners, hasWeight)) {
+            setBesideLine(vert);
+        }
+    }
     auto const findBesideLine = [this](Index corner) -> OfCorner {
         LineShare const line = findLineShare(
             _level.numHexagonalSteps, FindCornerTags(_level.lineRowCorners, corner, corner + 1));
         return {float(line.row.vertexWeight), line.share};
     };
-    for (Index const vert : listVertices(_level.lineRowCorners)) {
+    for (Index const vert : listVertices(_level.lineRowCorners, allMatter)) {
         if (_level.GetNumVertexFaces(vert) == kFVertexFaces) {
             SharpVertex const *const sharp = _level.FindSharpVertex(vert);
             setWeights(vert, sharp ? float(sharp->smoothShare) : 1, findBesideLine);
         }
     }
 
-    for (std::size_t i = 0; i < ruled.size(); ++i) {
-        VertexRule &rule = ruled[i].rule;
-        rule.faceWeights = _vertexWeights.data() + positionsOfRuled[i] + 1;
-        rule.faceWeight = rule.faceWeights[0];
-    }
     // They take the place of those that vertices had.
+    std::vector<RuledVertex> withNeighbors;
+    for (auto &[vert, ofVert] : ruled) {
+        ofVert.rule.faceWeights = _vertexWeights.data() + ofVert.position + 1;
+        ofVert.rule.faceWeight = ofVert.rule.faceWeights[0];
+        withNeighbors.push_back({vert, ofVert.rule});
+    }
     std::vector<RuledVertex> before;
     before.swap(_ruledVertices);
-    std::set_union(ruled.begin(), ruled.end(), before.begin(), before.end(),
+    std::set_union(withNeighbors.begin(), withNeighbors.end(), before.begin(), before.end(),
                    std::back_inserter(_ruledVertices),
                    [](RuledVertex const &x, RuledVertex const &y) { return x.vert < y.vert; });
     _ruledVertices.erase(std::remove_if(_ruledVertices.begin(), _ruledVertices.end(),
@@ -363,7 +424,8 @@ public:
     DenseRuleMaker(RefinementRules &rules, FaceMask faceMask)
         : _rules(rules), _level(rules._level), _faceMask(faceMask),
           _isVertex(rules._interpolation == Interpolation::Vertex),
-          _masks(_level.numHexagonalSteps), _quadMask(ComputeQuadMask(_level.numHexagonalSteps)) {}
+          _hasQuadRows(_isVertex && faceMask == FaceMask::Smooth), _masks(_level.numHexagonalSteps),
+          _quadMask(ComputeQuadMask(_level.numHexagonalSteps)) {}
 
     void Make() {
         std::vector<Index> const sharpFaces = findSharpFaces();
@@ -408,15 +470,22 @@ private:
     std::vector<Index> findSharpFaces() const;
     void addFace(Index face, int rule);
     void readTags(Index face, FaceTags &tags);
-    QuadRow findQuadRow(QuadFlags flags) const {
-        return FindQuadRow(_level.numHexagonalSteps, flags);
-    }
+    // The masks of a corner by the paths of its flags, and their shares: of hexagons inside, then beside lines.
+    struct PathRows {
+        MaskRow inside = kNoMaskRow;
+        double ofInside = 0;
+        QuadLineRow besideLines[2] = {{kNoMaskRow, false, 0}, {kNoMaskRow, false, 0}};
+
+        bool HasAny() const {
+            return ofInside > 0 || besideLines[0].row.mask || besideLines[1].row.mask;
+        }
+    };
+    PathRows findPathRows(FaceTags const &tags, int corner) const;
     bool hasOwnRows(FaceTags const &tags) const;
     Index findNextFace(FaceTags const &read);
     void addRule(FaceTags const &tags);
     void addRow(std::vector<double> const &row);
-    static void addMask(double const *mask, int corner, bool isBackwards, double share,
-                        std::vector<double> &row);
+    static void addMask(MaskRow const &mask, int corner, double share, std::vector<double> &row);
     void addIrregularWeights(IrregularCorner const &irregular, int corner,
                              std::vector<double> &row);
     // The entries of one corner.
@@ -428,7 +497,7 @@ private:
         SectorCorner const *end() const { return behind; }
     };
     static void addOneFace(Sectors sectors, int corner, std::vector<double> &row);
-    void addOneFaceHalf(Sectors sectors, std::vector<int> const &half, int place,
+    void addOneFaceHalf(Sectors sectors, std::vector<int> const &half, int place, double ofLine,
                         std::vector<double> &row);
     std::vector<double> const &getHalfFaceWeights(int size);
 
@@ -436,6 +505,7 @@ private:
     Level const &_level;
     FaceMask _faceMask;
     bool _isVertex;
+    bool _hasQuadRows; // level 0 has quadCorners for all masks
     IrregularMasks _masks;
     QuadMask _quadMask;
     std::unordered_map<int, std::vector<double>> _halfFaceWeights; // by number of corners
@@ -490,16 +560,40 @@ void RefinementRules::DenseRuleMaker::readTags(Index face, FaceTags &tags) {
             }
         },
         _level, tags);
-    for (int i = 0; i < kHexagon; ++i) {
+    for (int i = 0; i < kHexagon && _hasQuadRows; ++i) {
         tags.quadFlags[std::size_t(i)] =
             i < tags.size ? _level.quadCorners.GetFlags(tags.firstCorner + i) : QuadFlags();
     }
 }
 
+auto RefinementRules::DenseRuleMaker::findPathRows(FaceTags const &tags, int corner) const
+    -> PathRows {
+    PathRows result;
+    if (corner >= kHexagon || tags.size > kHexagon) {
+        return result;
+    }
+    QuadFlags const flags = tags.quadFlags[std::size_t(corner)];
+    if (!flags.HasAny()) {
+        return result;
+    }
+    if (tags.size == kHexagon) {
+        result.inside = FindQuadRow(_level.numHexagonalSteps, flags);
+        result.ofInside = result.inside.mask ? double(flags.GetShare()) : 0;
+    }
+    for (LineRole const role : kLineRoles) {
+        if (flags.HasLine()) {
+            result.besideLines[int(role)] = FindQuadLineRow(_level.numHexagonalSteps, flags, role);
+        }
+    }
+    return result;
+}
+
 // The first face with tags of corners behind those that have been read, mostly the next one; else the end.
 Index RefinementRules::DenseRuleMaker::findNextFace(FaceTags const &read) {
     Index const endRead = _level.faceFirstCorner[_endRead];
-    if (_nextQuad < endRead) {
+    if (!_hasQuadRows) {
+        _nextQuad = _level.numCorners;
+    } else if (_nextQuad < endRead) {
         _nextQuad = QuadCorners::Iterator(_level.quadCorners, endRead, _level.numCorners)->corner;
     }
     Index corner = _nextQuad;
@@ -524,18 +618,19 @@ void RefinementRules::DenseRuleMaker::addRow(std::vector<double> const &row) {
 
 // Whether any corner does not follow the circulant mask: flags alone are no reason.
 bool RefinementRules::DenseRuleMaker::hasOwnRows(FaceTags const &tags) const {
-    return tags.isHalf || tags.diagonal > 0 || !tags.sectorCorners.empty() ||
-           !tags.irregularCorners.empty() ||
-           (tags.size == kHexagon && std::any_of(tags.quadFlags.begin(), tags.quadFlags.end(),
-                                                 [this](QuadFlags flags) {
-                                                     return flags.GetShare() > 0 &&
-                                                            findQuadRow(flags).mask != nullptr;
-                                                 })) ||
-           std::any_of(tags.lineRowCorners.begin(), tags.lineRowCorners.end(),
-                       [this](LineRowCorner const &tag) {
-                           return FindLineRow(_level.numHexagonalSteps, tag.face, tag.place).mask !=
-                                  nullptr;
-                       });
+    if (tags.isHalf || tags.diagonal > 0 || !tags.sectorCorners.empty() ||
+        !tags.irregularCorners.empty()) {
+        return true;
+    }
+    for (int i = 0; i < tags.size && i < kHexagon; ++i) {
+        if (findPathRows(tags, i).HasAny()) {
+            return true;
+        }
+    }
+    return std::any_of(
+        tags.lineRowCorners.begin(), tags.lineRowCorners.end(), [this](LineRowCorner const &tag) {
+            return FindLineRow(_level.numHexagonalSteps, tag.face, tag.place).mask != nullptr;
+        });
 }
 
 // Corners of a face with nothing of their own have the rows of its circulant rule.
@@ -561,10 +656,7 @@ void RefinementRules::DenseRuleMaker::addRule(FaceTags const &tags) {
         IrregularCorner const *const ofIrregular =
             irregular != tags.irregularCorners.end() && irregular->corner == corner ? irregular++
                                                                                     : nullptr;
-        QuadFlags const flags = size == kHexagon ? tags.quadFlags[std::size_t(i)] : QuadFlags();
-        QuadRow const byPath =
-            flags.HasAny() ? findQuadRow(flags) : QuadRow{nullptr, false, -1, -1};
-        float const ofPath = byPath.mask ? flags.GetShare() : 0;
+        PathRows const byPath = findPathRows(tags, i);
         LineRowCorner const *const lines = line;
         while (line != tags.lineRowCorners.end() && line->corner == corner) {
             ++line;
@@ -576,7 +668,7 @@ void RefinementRules::DenseRuleMaker::addRule(FaceTags const &tags) {
         }
         std::size_t const circulantRow =
             _rules._circulants[std::size_t(size)] + std::size_t(size - i);
-        if (sharp == 0 && towards == 0 && !hasOneFace && !ofIrregular && ofPath == 0 &&
+        if (sharp == 0 && towards == 0 && !hasOneFace && !ofIrregular && !byPath.HasAny() &&
             besideLine.share == 0) {
             _rules._rows.push_back(circulantRow);
             continue;
@@ -609,31 +701,50 @@ void RefinementRules::DenseRuleMaker::addRule(FaceTags const &tags) {
             for (std::size_t j = 0; j < half.size(); ++j) {
                 row[std::size_t(half[j])] += sharp * weights[j];
             }
+            auto const isOfHalf = [](QuadLineRow const &beside) {
+                return beside.row.mask && beside.isOfHalf;
+            };
             if (hasOneFace) {
-                addOneFaceHalf({sectors, sector}, half, int(place), row);
+                double ofLine = 0;
+                for (QuadLineRow const &beside : byPath.besideLines) {
+                    ofLine =
+                        isOfHalf(beside) ? std::max(ofLine, std::min(sharp, beside.share)) : ofLine;
+                }
+                addOneFaceHalf({sectors, sector}, half, int(place), ofLine, row);
             }
-            if (besideLine.share > 0 && besideLine.face == LineFace::Half) {
-                // In the place of the half face's own mask.
-                double const share = std::min(sharp, double(besideLine.share));
+            // In the place of the half face's own mask.
+            auto const addHalfMask = [&](MaskRow const &mask, double share) {
                 for (int j = 0; j < kTrapezoid; ++j) {
-                    int const turns = besideLine.row.isBackwards ? kTrapezoid - j : j;
+                    int const turns = mask.isBackwards ? kTrapezoid - j : j;
                     std::size_t const to = (place + std::size_t(turns)) % kTrapezoid;
-                    row[std::size_t(half[to])] += share * (besideLine.row.mask[j] - weights[to]);
+                    row[std::size_t(half[to])] += share * (mask.mask[j] - weights[to]);
+                }
+            };
+            if (besideLine.share > 0 && besideLine.face == LineFace::Half) {
+                addHalfMask(besideLine.row, std::min(sharp, double(besideLine.share)));
+            }
+            for (QuadLineRow const &beside : byPath.besideLines) {
+                if (isOfHalf(beside)) {
+                    addHalfMask(beside.row, std::min(sharp, beside.share));
                 }
             }
         } else if (hasOneFace) {
             addOneFace({sectors, sector}, i, row);
         }
-        if (ofIrregular && ofPath < 1) {
+        if (ofIrregular && byPath.ofInside < 1) {
             addIrregularWeights(*ofIrregular, i, row);
         }
-        if (ofPath > 0) {
-            addMask(*byPath.mask, i, byPath.isBackwards, ofPath, row);
+        if (byPath.ofInside > 0) {
+            addMask(byPath.inside, i, byPath.ofInside, row);
         }
+        // Where another line crosses the face, as much as it is sharper than that.
         if (besideLine.share > 0 && besideLine.face != LineFace::Half) {
-            // Where another line crosses the face, as much as it is sharper than that.
-            addMask(besideLine.row.mask, i, besideLine.row.isBackwards,
-                    std::max(0.0, double(besideLine.share) - sharp), row);
+            addMask(besideLine.row, i, std::max(0.0, double(besideLine.share) - sharp), row);
+        }
+        for (QuadLineRow const &beside : byPath.besideLines) {
+            if (beside.row.mask && !beside.isOfHalf) {
+                addMask(beside.row, i, std::max(0.0, beside.share - sharp), row);
+            }
         }
         addRow(row);
     }
@@ -660,21 +771,24 @@ void RefinementRules::DenseRuleMaker::addOneFace(Sectors sectors, int corner,
             kind = sector.kind;
         }
     }
-    addMask(kind == SectorCorner::kAtOne ? kOneFaceMask.atVertex : kOneFaceMask.atNeighbor, corner,
-            kind == SectorCorner::kBeforeOne, share, row);
+    double const *const mask =
+        kind == SectorCorner::kAtOne ? kOneFaceMask.atVertex : kOneFaceMask.atNeighbor;
+    addMask({mask, kind == SectorCorner::kBeforeOne, -1, -1}, corner, share, row);
 }
 
-// The corner is number \p place of half a face, whose mask has the share of its sharp side in the row.  Beside one end
-// of the line, that end's mask goes before the other's.
+// The corner is number \p place of half a face, whose mask has the share of its sharp side in the row.  Masks beside lines
+// go before these, which have what \p ofLine leaves; beside one end of the line, that end's mask goes before the other's.
 void RefinementRules::DenseRuleMaker::addOneFaceHalf(Sectors sectors, std::vector<int> const &half,
-                                                     int place, std::vector<double> &row) {
+                                                     int place, double ofLine,
+                                                     std::vector<double> &row) {
     double beside = 0;
     double farFrom = 0;
     for (SectorCorner const &sector : sectors) {
         beside += sector.kind == SectorCorner::kBesideOne ? sector.weight : 0;
         farFrom += sector.kind == SectorCorner::kFarFromOne ? sector.weight : 0;
     }
-    farFrom = std::max(0.0, farFrom - beside);
+    farFrom = std::max(0.0, farFrom - std::max(beside, ofLine));
+    beside = std::max(0.0, beside - ofLine);
     // From the corner by the end beside it and the other end to the corner next to it.
     int const places[kTrapezoid] = {place, 3 - place, place - 2, 5 - place};
     double const *const weights =
@@ -687,12 +801,13 @@ void RefinementRules::DenseRuleMaker::addOneFaceHalf(Sectors sectors, std::vecto
     }
 }
 
-// Mixes a share of a hexagon's mask into a row of its corner, forward from there or backward.
-void RefinementRules::DenseRuleMaker::addMask(double const *mask, int corner, bool isBackwards,
-                                              double share, std::vector<double> &row) {
-    for (int j = 0; j < kHexagon; ++j) {
-        double &weight = row[std::size_t((corner + (isBackwards ? kHexagon - j : j)) % kHexagon)];
-        weight += share * (mask[j] - weight);
+// Mixes a share of a face's mask into a row of its corner, forward from there or backward.
+void RefinementRules::DenseRuleMaker::addMask(MaskRow const &mask, int corner, double share,
+                                              std::vector<double> &row) {
+    int const size = int(row.size());
+    for (int j = 0; j < size; ++j) {
+        double &weight = row[std::size_t((corner + (mask.isBackwards ? size - j : j)) % size)];
+        weight = share == 1 ? mask.mask[j] : weight + share * (mask.mask[j] - weight);
     }
 }
 
@@ -711,7 +826,7 @@ void RefinementRules::DenseRuleMaker::addIrregularWeights(IrregularCorner const 
     }
     bool const isBackwards =
         kind == Kind::kBeforeVertex || kind == Kind::kBehindQuad || kind == Kind::kOneBeforeQuad;
-    addMask(*mask, corner, isBackwards, irregular.weight, row);
+    addMask({*mask, isBackwards, -1, -1}, corner, double(irregular.weight), row);
 }
 
 RefinementRules::RefinementRules(Level const &parent, HexSchemeOptions schemeOptions,
@@ -725,7 +840,7 @@ RefinementRules::RefinementRules(Level const &parent, HexSchemeOptions schemeOpt
     makeCirculantRules();
     if (interpolation == Interpolation::Vertex) {
         makeRuledVertices(isHexagonal);
-        if (isHexagonal) {
+        if (isHexagonal && _faceMask == FaceMask::Smooth) {
             makeVertexWeights();
         }
     }

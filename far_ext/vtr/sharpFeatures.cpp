@@ -133,11 +133,17 @@ bool isOneFaceBetween(Level const &level, Index vert, Index const neighbors[2]) 
 SharpVertex creaseMask(Level const &level, FaceMask faceMask, Index vert, SharpEdges const &edges,
                        int const pair[2]) {
     Index const neighbors[2] = {edges.neighbors[pair[0]], edges.neighbors[pair[1]]};
-    bool const isBounded =
-        level.numHexagonalSteps >= kNumStepsToConstantMasks && !isNonManifold(level, vert) &&
-        (faceMask == FaceMask::Smooth || !isOneFaceBetween(level, vert, neighbors));
+    CreaseLevel ofLevel = CreaseLevel::Plain;
+    if (!isNonManifold(level, vert)) {
+        bool const isBounded =
+            level.numHexagonalSteps >= kNumStepsToConstantMasks &&
+            (faceMask == FaceMask::Smooth || !isOneFaceBetween(level, vert, neighbors));
+        bool const isFirst = faceMask == FaceMask::Smooth && level.hasFirstLineMasks &&
+                             level.numHexagonalSteps < kNumLineSteps;
+        ofLevel = isBounded ? CreaseLevel::Bounded : isFirst ? CreaseLevel::First : ofLevel;
+    }
     auto const [left, right] =
-        ComputeCreaseMask(edges.isLong[pair[0]], edges.isLong[pair[1]], isBounded);
+        ComputeCreaseMask(edges.isLong[pair[0]], edges.isLong[pair[1]], ofLevel);
     return {vert,
             Crease::RULE_CREASE,
             1 - left - right,

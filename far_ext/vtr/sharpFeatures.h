@@ -25,6 +25,7 @@ std::vector<float> GatherSharpness(Level const &level, Far::Index vert);
 ///
 /// Where a vertex meets a crease or a sharp boundary, V' has the mask of ComputeCreaseMask.  From
 /// kNumStepsToConstantMasks steps on it is the bounded one; earlier, the surface beside it would be less even.
+/// RefinementRules turn those of level 0 into the ones of FaceMask::Smooth.
 /// Never bounded are masks where several sheets share the curve and, but with FaceMask::Smooth, where one face lies
 /// between the two edges: that would have no tangent plane, since what lies across would shrink as fast as the bend
 /// of the curve.

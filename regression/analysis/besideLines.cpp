@@ -65,23 +65,32 @@ std::vector<double> MeasureTube(PolygonMesh const &mesh, double rowHeight, int n
     return sums;
 }
 
-std::vector<double> MeasureHalfDisk(Tiling tiling, int numFaces, AnyScheme const &scheme,
-                                    int numRings, int level) {
+Shape MakeHalfDisk(Tiling tiling, int numFaces) {
     constexpr int kNumControlRings = 4;
     constexpr double kHeight = 1e-3; // so that slopes do not matter
     Shape shape = MakeVertexDisk(tiling, numFaces, kNumControlRings, DiskPart::Half);
     for (std::size_t i = 0; i < shape.positions.size(); i += 3) {
         shape.positions[i + 2] = kHeight * shape.positions[i] * shape.positions[i];
     }
-    OpenSubdiv::Sdc::Options options;
-    options.SetVtxBoundaryInterpolation(OpenSubdiv::Sdc::Options::VTX_BOUNDARY_EDGE_ONLY);
-    PolygonMesh const mesh = RefineSurface(shape, scheme, level, MeshCenter(), options).back().mesh;
+    return shape;
+}
+
+std::vector<double> MeasureHalfDisk(PolygonMesh const &mesh, int numRings) {
     std::vector<double> result;
     for (int ring = 0; ring < numRings; ++ring) {
         std::vector<int> const vertices = FindRing(mesh, ring);
         result.push_back(MeasureUnevenness(mesh, vertices, std::vector<int>(vertices.size(), 0)));
     }
     return result;
+}
+
+std::vector<double> MeasureHalfDisk(Tiling tiling, int numFaces, AnyScheme const &scheme,
+                                    int numRings, int level) {
+    OpenSubdiv::Sdc::Options options;
+    options.SetVtxBoundaryInterpolation(OpenSubdiv::Sdc::Options::VTX_BOUNDARY_EDGE_ONLY);
+    Shape const shape = MakeHalfDisk(tiling, numFaces);
+    return MeasureHalfDisk(RefineSurface(shape, scheme, level, MeshCenter(), options).back().mesh,
+                           numRings);
 }
 
 } // namespace OpenSubdivHex::Regression

@@ -29,14 +29,18 @@ std::vector<double> MeasureTube(PolygonMesh const &mesh, double rowHeight, int n
 /// The height of a row of MakeTube(), in units of z.
 double GetTubeRowHeight(int numAround, double rowHeight);
 
-/// \brief How uneven mean curvature is around a border vertex with \p numFaces faces, by ring.
+/// \brief Half of a disk, as MakeVertexDisk() makes it, around a border vertex with \p numFaces faces, with its border along
+/// the x axis.
 ///
-/// The control mesh is half of a disk, as MakeVertexDisk() makes it, with its border along the x axis.  Its points are
-/// lifted, by very little, to x^2, so that mean curvature should be the same everywhere.  Ring i lies between the
-/// distances 2^-i and 2^-(i + 1) from the vertex, as of MeasureRipple().
+/// Its points are lifted, by very little, to x^2, so that mean curvature should be the same everywhere.
+Shape MakeHalfDisk(Tiling tiling, int numFaces);
+
+/// \brief How uneven mean curvature of a refined MakeHalfDisk() is, by ring: ring i lies between the distances 2^-i and
+/// 2^-(i + 1) from the vertex, as of MeasureRipple().
 ///
-/// \param level  of the refined mesh
-/// \throws std::runtime_error  as RefineSurface, and for a ring without vertices
+/// \throws std::runtime_error  for a ring without vertices
+std::vector<double> MeasureHalfDisk(PolygonMesh const &mesh, int numRings);
+/// Overload for MakeHalfDisk() refined to \p level, with its border as VTX_BOUNDARY_EDGE_ONLY has it.
 std::vector<double> MeasureHalfDisk(Tiling tiling, int numFaces, AnyScheme const &scheme,
                                     int numRings, int level);
 

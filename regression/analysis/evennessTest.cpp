@@ -244,9 +244,9 @@ TEST(Evenness, QuadsBesideLines) {
         std::array<double, 2> border;
         double fineCrease; // of the first row at the fine level
     };
-    for (Row const &row : {Row{14, 8, {0.0811, 0.0130}, {0.0960, 0.0204}, 0.0885},
-                           Row{20, 10, {0.0705, 0.0092}, {0.0751, 0.0124}, 0.0768},
-                           Row{9, 6, {0.1030, 0.0224}, {0.1540, 0.0480}, 0.1123}}) {
+    for (Row const &row : {Row{14, 8, {0.0657, 0.0165}, {0.0727, 0.0225}, 0.0786},
+                           Row{20, 10, {0.0679, 0.0127}, {0.0768, 0.0154}, 0.0757},
+                           Row{9, 6, {0.0905, 0.0253}, {0.0807, 0.0486}, 0.1139}}) {
         SCOPED_TRACE(row.numU);
         HexSchemeOptions const smooth{FaceMask::Smooth};
         Strips const strips = measureStrips(row.numU, row.numV, TorusFaces::Quads, smooth);
@@ -264,7 +264,7 @@ TEST(Evenness, QuadsBesideLines) {
                 .mesh;
         double const rowWidth = 1.0 / row.numV;
         EXPECT_NEAR(MeasureTorusStrips(closed, row.numU, rowWidth, rowWidth, 2)[1],
-                    strips.border[1], 0.002);
+                    strips.border[1], 0.004);
         Strips const catmark =
             measureStrips(row.numU, row.numV, TorusFaces::Quads, Sdc::SCHEME_CATMARK);
         EXPECT_LT(catmark.crease[0], 0.03);

@@ -2,10 +2,8 @@
 #ifndef OPENSUBDIVHEX_REGRESSION_ANALYSIS_LINE_MASK_SEARCH_H
 #define OPENSUBDIVHEX_REGRESSION_ANALYSIS_LINE_MASK_SEARCH_H
 
-#include <Eigen/Core>
+#include "tableSearch.h"
 
-#include <memory>
-#include <string>
 #include <vector>
 
 namespace OpenSubdivHex::Regression {
@@ -19,39 +17,31 @@ namespace OpenSubdivHex::Regression {
 /// that mean deviates by from the exact one, and of what the weights differ by from those of later levels.  Points on
 /// the line are not searched for: they follow from the line alone.
 ///
-/// The weights of rows, and of V', sum up to 1 at most.
-class LineMaskSearch {
+/// It begins with the masks of hexagons and half hexagons, and V', of later levels.  Judge() looks at the first two rows
+/// of tori of triangles beside a crease and a border, at level 5.
+class LineMaskSearch : public TableSearch {
 public:
     /// \param level  at which surfaces are judged: 4 or more
     explicit LineMaskSearch(int level);
-    ~LineMaskSearch();
-    LineMaskSearch(LineMaskSearch const &) = delete;
-    LineMaskSearch &operator=(LineMaskSearch const &) = delete;
 
-    /// The free weights: those that the library has.
-    Eigen::VectorXd GetShipped() const;
-    /// Where a search begins: with the masks of hexagons and half hexagons, and V', of later levels.
-    Eigen::VectorXd GetStart() const;
-
-    /// The measure that a search makes small.
-    Eigen::VectorXd Measure(Eigen::VectorXd const &weights) const;
-
-    /// How uneven a surface is.
-    struct Entry {
-        std::string name;
-        double unevenness;
-    };
-    /// How uneven the first two rows of tori of triangles are beside a crease and a border, at level 5.
-    std::vector<Entry> Judge(Eigen::VectorXd const &weights) const;
-
-    /// In the parts that the library keeps.
-    Eigen::VectorXd Round(Eigen::VectorXd weights) const;
-    /// Prints the rows as lineRows.inl has them.
-    void Print(Eigen::VectorXd const &weights) const;
+protected:
+    Eigen::VectorXd measureLifts(SearchRows const &rows) const override;
+    Eigen::VectorXd measureMore(SearchRows const &rows,
+                                Eigen::VectorXd const &weights) const override;
+    std::vector<Entry> judgeMore(SearchRows const &rows) const override;
+    void print(SearchRows const &rows) const override;
 
 private:
-    class Implementation;
-    std::unique_ptr<Implementation> _implementation;
+    void chooseVertices();
+
+    Shape const _shape;
+    MaskedSurface _surface;
+    MaskPoints const _lifted;
+    // By chosen vertex; the sum of areas is 1, and groups are by distance from the border.
+    std::vector<int> _groups;
+    std::vector<double> _areas;
+    std::vector<double> _areasOfGroups;
+    PlaneDerivatives _derivatives;
 };
 
 } // namespace OpenSubdivHex::Regression

@@ -2,10 +2,8 @@
 #ifndef OPENSUBDIVHEX_REGRESSION_ANALYSIS_QUAD_MASK_SEARCH_H
 #define OPENSUBDIVHEX_REGRESSION_ANALYSIS_QUAD_MASK_SEARCH_H
 
-#include <Eigen/Core>
+#include "tableSearch.h"
 
-#include <memory>
-#include <string>
 #include <vector>
 
 namespace OpenSubdivHex::Regression {
@@ -24,42 +22,35 @@ namespace OpenSubdivHex::Regression {
 /// - With three, five and six it is looked at half a face, nearer places more than their area; the height of bowls
 ///   is free.  The masks of flags at four faces are the library's.
 ///
-/// Rows that the weights leave to 1 have at least 0 there.
-class QuadMaskSearch {
+/// It begins, with four faces, with the masks and V' of FaceMask::Smooth where nothing is irregular; with others with
+/// the rows of four that have the same paths.  Judge() looks at level 5 of other control meshes: of tori within
+/// parallels, or of spheres of quads with such vertices.
+class QuadMaskSearch : public TableSearch {
 public:
     /// \param numFaces  3 to 6
     /// \param level     at which surfaces are judged: 5 or more with four faces, else 4 or more
     QuadMaskSearch(int numFaces, int level);
-    ~QuadMaskSearch();
-    QuadMaskSearch(QuadMaskSearch const &) = delete;
-    QuadMaskSearch &operator=(QuadMaskSearch const &) = delete;
 
-    /// The free weights: those that the library has.
-    Eigen::VectorXd GetShipped() const;
-    /// Where a search begins: with four faces the masks and V' of FaceMask::Smooth where nothing is irregular; with
-    /// others the rows of four with the same paths.
-    Eigen::VectorXd GetStart() const;
-
-    /// The measure that a search makes small.
-    Eigen::VectorXd Measure(Eigen::VectorXd const &weights) const;
-
-    /// How uneven a surface is.
-    struct Entry {
-        std::string name;
-        double unevenness;
-    };
-    /// \brief The root of the mean square that Measure() has, and how uneven level 5 of other control meshes is: of tori
-    /// within parallels, or of spheres of quads with such vertices.
-    std::vector<Entry> Judge(Eigen::VectorXd const &weights) const;
-
-    /// In the parts that the library keeps.
-    Eigen::VectorXd Round(Eigen::VectorXd weights) const;
-    /// Prints the rows as quadRows.inl has them, and the masks in quads as mask.cpp.
-    void Print(Eigen::VectorXd const &weights) const;
+protected:
+    Eigen::VectorXd measureLifts(SearchRows const &rows) const override;
+    Eigen::VectorXd measureMore(SearchRows const &rows,
+                                Eigen::VectorXd const &weights) const override;
+    std::vector<Entry> judgeMore(SearchRows const &rows) const override;
+    void print(SearchRows const &rows) const override;
 
 private:
-    class Implementation;
-    std::unique_ptr<Implementation> _implementation;
+    bool isRegular() const;
+    SearchRows makeStart() const;
+    void chooseVertices();
+    void findCenters();
+
+    int const _numFaces;
+    Shape const _shape;
+    MaskedSurface _surface;
+    MaskPoints const _lifted;
+    std::vector<double> _areas; // by chosen vertex; their sum is 1
+    PlaneDerivatives _derivatives;
+    std::vector<MeshCenter> _centers; // at the first level with constant masks
 };
 
 } // namespace OpenSubdivHex::Regression

@@ -8,6 +8,7 @@
 #include "leastSquares.h"
 #include "lineMaskSearch.h"
 #include "maskSearch.h"
+#include "quadLineSearch.h"
 #include "quadMaskSearch.h"
 #include "searchPatchConstants.h"
 
@@ -74,14 +75,13 @@ void run(TableFit const &fit) {
     fit.print(rounded);
 }
 
-void searchQuads(int numFaces, Effort const &effort) {
-    QuadMaskSearch const search(numFaces, effort.quadLevel);
-    run({search.GetShipped(), search.GetStart(), effort.maxQuadSteps,
+void searchTable(TableSearch const &search, int maxSteps) {
+    run({search.GetShipped(), search.GetStart(), maxSteps,
          [&](Weights const &weights) { return search.Measure(weights); },
          [&](Weights const &weights) { return search.Round(weights); },
          [&](Weights const &weights) {
              Entries entries;
-             for (QuadMaskSearch::Entry const &entry : search.Judge(weights)) {
+             for (TableSearch::Entry const &entry : search.Judge(weights)) {
                  entries.emplace_back(entry.name, entry.unevenness);
              }
              return entries;
@@ -105,21 +105,6 @@ void searchMasks(SearchedMasks const &searched, Effort const &effort) {
          [&](Weights const &weights) { PrintMasks(searched, weights); }});
 }
 
-void searchLines(Effort const &effort) {
-    LineMaskSearch const search(effort.lineLevel);
-    run({search.GetShipped(), search.GetStart(), effort.maxLineSteps,
-         [&](Weights const &weights) { return search.Measure(weights); },
-         [&](Weights const &weights) { return search.Round(weights); },
-         [&](Weights const &weights) {
-             Entries entries;
-             for (LineMaskSearch::Entry const &entry : search.Judge(weights)) {
-                 entries.emplace_back(entry.name, entry.unevenness);
-             }
-             return entries;
-         },
-         [&](Weights const &weights) { search.Print(weights); }});
-}
-
 struct Table {
     std::string name;
     std::string where;
@@ -133,7 +118,9 @@ std::vector<Table> makeTables() {
         tables.push_back(
             {"quads-" + std::to_string(numFaces),
              "far_ext/rules/quadRows.inl: by the paths of flags of vertices with so many quads",
-             [=](Effort const &effort) { searchQuads(numFaces, effort); }});
+             [=](Effort const &effort) {
+                 searchTable(QuadMaskSearch(numFaces, effort.quadLevel), effort.maxQuadSteps);
+             }});
     }
     auto const add = [&tables](std::string const &name, char const *where,
                                SearchedMasks const &searched) {
@@ -149,8 +136,18 @@ std::vector<Table> makeTables() {
         add("triangles-" + std::to_string(numFaces), "around vertices with so many triangles",
             {numFaces, FacesAround::Triangles});
     }
-    tables.push_back(
-        {"lines", "far_ext/rules/lineRows.inl: beside lines of truncated meshes", searchLines});
+    tables.push_back({"lines", "far_ext/rules/lineRows.inl: beside lines of truncated meshes",
+                      [](Effort const &effort) {
+                          searchTable(LineMaskSearch(effort.lineLevel), effort.maxLineSteps);
+                      }});
+    for (int numQuads = 1; numQuads <= 4; ++numQuads) {
+        tables.push_back(
+            {"quads-beside-lines-" + std::to_string(numQuads),
+             "far_ext/rules/quadLineRows.inl: beside vertices of lines with so many quads",
+             [=](Effort const &effort) {
+                 searchTable(QuadLineSearch(numQuads, effort.lineLevel), effort.maxLineSteps);
+             }});
+    }
     for (int steps = 0; steps <= 2; ++steps) {
         tables.push_back(
             {"patches-" + std::to_string(steps),
@@ -172,7 +169,7 @@ int main(int argc, char **argv) {
     if (wanted.empty()) {
         std::printf("usage: searchMasks [--quick] all | TABLE...\n\n");
         for (Table const &table : tables) {
-            std::printf("  %-13s %s\n", table.name.c_str(), table.where.c_str());
+            std::printf("  %-20s %s\n", table.name.c_str(), table.where.c_str());
         }
         std::printf("\nAll take some minutes; --quick ends each search after a few steps.\n");
         return 2;

@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 
+#include <algorithm>
 #include <optional>
 #include <string>
 #include <vector>
@@ -72,6 +73,36 @@ struct QuadPath {
     QuadPath Append(char digit) const {
         return IsEmpty() ? *this : QuadPath{steps + digit, sharpness > 1 ? sharpness - 1 : 0};
     }
+};
+
+/// \brief An end of an edge of a face, as what steps made of one in a quad beside a smooth line; empty where it came from none,
+/// and from three steps on.
+struct LinePath {
+    std::string flag;    ///< where it was in the quad: see quadLineRows.txt
+    std::string steps;   ///< as of QuadPath
+    float sharpness = 0; ///< of the line, less one for each step
+    float cross = 0;     ///< likewise, of the sharpest other thing that is in the way of the line
+
+    bool IsEmpty() const { return flag.empty(); }
+    float GetShare() const {
+        return std::max(0.0f, std::min(1.0f, sharpness) - std::min(1.0f, cross));
+    }
+    /// After another step.
+    LinePath Append(char digit) const {
+        constexpr float kInfinite = 10;
+        auto const next = [](float of) { return of >= kInfinite ? of : std::max(0.0f, of - 1); };
+        return IsEmpty() || steps.size() == 2
+                   ? LinePath()
+                   : LinePath{flag, steps + digit, next(sharpness), next(cross)};
+    }
+};
+
+/// The paths of such an end from two lines: one that it was at the other end of an edge from, and one that it was at.
+struct LinePaths {
+    LinePath away;
+    LinePath at;
+
+    LinePaths Append(char digit) const { return {away.Append(digit), at.Append(digit)}; }
 };
 
 /// A path of at most four steps that has the same rows, now and after any more steps; empty where it has none any more.

@@ -88,8 +88,10 @@ LimitReference::Piece LimitReference::cutOut(TaggedMesh const &mesh, int vertex,
     part.freeBoundaries = mesh.freeBoundaries;
     part.madeBy = mesh.madeBy;
     part.numHexagonalSteps = std::min(mesh.numHexagonalSteps, kLastRule);
+    part.hasFirstLines = mesh.hasFirstLines;
     signature = {part.chaikin,           part.freeBoundaries,      int(part.madeBy),
-                 part.numHexagonalSteps, mesh.faceOrigins.empty(), comesIn};
+                 part.numHexagonalSteps, mesh.faceOrigins.empty(), comesIn,
+                 part.hasFirstLines};
     auto const getKind = [](TaggedMesh::FaceOrigin const &origin) {
         return origin.edge >= 0 ? 1 : origin.face >= 0 ? 0 : 2;
     };
@@ -108,6 +110,8 @@ LimitReference::Piece LimitReference::cutOut(TaggedMesh const &mesh, int vertex,
         copy.holes.assign(size, false); // of no matter for values
         copy.pathsOut.resize(size);
         copy.pathsIn.resize(size);
+        copy.linesOut.resize(size);
+        copy.linesIn.resize(size);
         signature.insert(signature.end(), {int(size), face.isHalf, face.isHalf ? entry.place : 0});
         for (std::size_t i = 0; i < size; ++i) {
             std::size_t const place = (std::size_t(entry.place) + i) % size;
@@ -123,6 +127,17 @@ LimitReference::Piece LimitReference::cutOut(TaggedMesh const &mesh, int vertex,
             if (!face.pathsOut.empty()) {
                 copy.pathsOut[to] = Shorten(face.pathsOut[place]);
                 copy.pathsIn[to] = Shorten(face.pathsIn[place]);
+            }
+            if (!face.linesOut.empty()) {
+                copy.linesOut[to] = face.linesOut[place];
+                copy.linesIn[to] = face.linesIn[place];
+            }
+            for (LinePath const &path : {copy.linesOut[to].away, copy.linesOut[to].at,
+                                         copy.linesIn[to].away, copy.linesIn[to].at}) {
+                std::string const flag = path.flag + path.steps;
+                signature.push_back(int(flag.size()));
+                signature.insert(signature.end(), flag.begin(), flag.end());
+                signature.insert(signature.end(), {bitsOf(path.sharpness), bitsOf(path.cross)});
             }
             for (QuadPath const &path : {copy.pathsOut[to], copy.pathsIn[to]}) {
                 signature.push_back(int(path.steps.size()));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "irregularReference.h"
-#include "lineReference.h"
+#include "quadLineReference.h"
 #include "taggedRules.h"
 
 #include <algorithm>
@@ -299,8 +299,11 @@ public:
         for (std::size_t v = 0; v < _mesh.vertices.size(); ++v) {
             if (_child.vVertices[v] >= 0) {
                 _result.row(_child.vVertices[v]) =
-                    _isVarying ? Point(_values.row(Eigen::Index(v)))
-                               : mixBesideLines(int(v), mixByPaths(int(v), movedVertex(int(v))));
+                    _isVarying
+                        ? Point(_values.row(Eigen::Index(v)))
+                        : mixBesideLines(
+                              int(v),
+                              mixBesideQuadLines(int(v), mixByPaths(int(v), movedVertex(int(v)))));
             }
         }
         return std::move(_result);
@@ -443,8 +446,19 @@ private:
         Point const &otherEnd = points[corner.place == 3 ? 1 : 0];
         Point const beside = (94.5 * self + 75 * end + 34.5 * otherEnd + 52 * twin) / 256;
         Point const farFrom = (122 * self + 39.5 * end + 78 * otherEnd + 16.5 * twin) / 256;
-        double const near = found->second.before;
-        double const far = std::max(0.0, found->second.far - near); // the near end goes first
+        // Rules beside lines go first, then the near end.
+        double ofLine = 0;
+        for (LineRule const &rule : quadLineRulesOf(corner)) {
+            if (rule.isOfHalf && !rule.weights.empty()) {
+                Edge const &line = _mesh.edges[face.edges[0]];
+                double const sharp =
+                    line.sides.size() == 1 ? 1 : std::min(1.0, double(line.sharpness));
+                ofLine = std::max(ofLine, std::min(sharp, rule.share));
+            }
+        }
+        double const near = std::max(0.0, found->second.before - ofLine);
+        double const far =
+            std::max(0.0, found->second.far - std::max(double(found->second.before), ofLine));
         return near * beside + far * farFrom - (near + far) * halfPoint(face, corner.place);
     }
 
@@ -473,12 +487,31 @@ private:
         return {corners, wholeOf(corner).second};
     }
 
-    std::optional<LineRule> lineRuleOf(Side corner) const {
+    std::optional<LineRule> truncatedRuleOf(Side corner) const {
         if (!hasIrregularRules()) {
             return {};
         }
         auto const [hexagon, place] = hexagonOf(corner);
         return FindLineRule(_mesh, corner, hexagon, place);
+    }
+    std::vector<LineRule> quadLineRulesOf(Side corner) const {
+        if (!hasIrregularRules() || _mesh.faces[corner.face].linesOut.empty()) {
+            return {};
+        }
+        auto const [out, in] = flagsOf<LinePaths>(corner, &Face::linesOut, &Face::linesIn);
+        return FindQuadLineRules(out, in);
+    }
+    /// All rules that have weights, of half a hexagon or not, in the order in which they are mixed in.
+    std::vector<LineRule> lineRulesOf(Side corner, bool areOfHalf) const {
+        std::vector<LineRule> rules = quadLineRulesOf(corner);
+        if (std::optional<LineRule> const rule = truncatedRuleOf(corner)) {
+            rules.insert(rules.begin(), *rule);
+        }
+        auto const isOther = [&](LineRule const &rule) {
+            return rule.isOfHalf != areOfHalf || rule.weights.empty();
+        };
+        rules.erase(std::remove_if(rules.begin(), rules.end(), isOther), rules.end());
+        return rules;
     }
 
     /// A sum of the points around a face, from one of them on.
@@ -492,41 +525,36 @@ private:
         return sum;
     }
 
-    /// The change that the row of half a hexagon makes, for a line that is as sharp.
+    /// The change that the rows of half a hexagon make, for a line that is as sharp.
     Point fromLine(Face const &face, Side corner, double sharp) const {
-        std::optional<LineRule> const rule = lineRuleOf(corner);
-        if (!rule || !rule->isOfHalf || rule->weights.empty()) {
-            return Point::Zero(_values.cols());
+        Point change = Point::Zero(_values.cols());
+        for (LineRule const &rule : lineRulesOf(corner, true)) {
+            Point const point = sumFrom(pointsOf(face.vertices), corner.place, rule);
+            change += std::min(sharp, rule.share) * (point - halfPoint(face, corner.place));
         }
-        Point const point = sumFrom(pointsOf(face.vertices), corner.place, *rule);
-        return std::min(sharp, rule->share) * (point - halfPoint(face, corner.place));
+        return change;
     }
 
-    /// A new point of a hexagon, whose other rules have made \p other.
+    /// A new point, whose other rules have made \p other.
     Point mixBesideLine(Side corner, Point const &other) const {
-        std::optional<LineRule> const rule = lineRuleOf(corner);
-        if (!rule || rule->isOfHalf || rule->weights.empty()) {
-            return other;
-        }
-        auto const [whole, place] = wholeOf(corner);
+        Point result = other;
         double const crossing = std::min(1.0, lineSharpness(_mesh, _mesh.faces[corner.face]));
-        double const share = std::max(0.0, rule->share - crossing);
-        return share * sumFrom(pointsOf(whole), place, *rule) + (1 - share) * other;
+        for (LineRule const &rule : lineRulesOf(corner, false)) {
+            auto const [whole, place] = wholeOf(corner);
+            double const share = std::max(0.0, rule.share - crossing);
+            result = share * sumFrom(pointsOf(whole), place, rule) + (1 - share) * result;
+        }
+        return result;
     }
 
     /// A moved vertex, likewise: where three faces are around it and all tell the weights of their new points.
     Point mixBesideLines(int v, Point const &other) const {
-        double share = 0;
-        for (RuleShare const &ofRule : ruleShares(_mesh, v)) {
-            bool const isSmooth =
-                ofRule.rule == TaggedRule::Smooth || ofRule.rule == TaggedRule::Dart;
-            share += isSmooth ? ofRule.weight : 0;
-        }
+        double share = smoothShareOf(v);
         Point const old = _values.row(v);
         Point moved = old;
         std::set<int> around;
         for (Side corner : _mesh.vertices[std::size_t(v)].corners) {
-            std::optional<LineRule> const rule = lineRuleOf(corner);
+            std::optional<LineRule> const rule = truncatedRuleOf(corner);
             if (!rule || !rule->weightOfPoint) {
                 return other;
             }
@@ -540,14 +568,13 @@ private:
     }
 
     /// At a corner, those of the hexagon where its face is half of one.
-    std::pair<QuadPath, QuadPath> pathsOf(Side corner) const {
+    template <typename PATH>
+    std::pair<PATH, PATH> flagsOf(Side corner, std::vector<PATH> Face::*outs,
+                                  std::vector<PATH> Face::*ins) const {
         Face const &face = _mesh.faces[corner.face];
-        if (face.pathsOut.empty()) {
-            return {};
-        }
         std::size_t const place = std::size_t(corner.place);
-        QuadPath out = face.pathsOut[place];
-        QuadPath in = face.pathsIn[place];
+        PATH out = (face.*outs)[place];
+        PATH in = (face.*ins)[place];
         if (face.isHalf && place < 2) {
             // At the ends of the line, one edge is the other half's.
             Edge const &line = _mesh.edges[face.edges[0]];
@@ -556,9 +583,15 @@ private:
             }
             bool const isFirst = line.sides[0].face == corner.face;
             Face const &other = _mesh.faces[line.sides[isFirst ? 1 : 0].face];
-            (place == 0 ? out : in) = place == 0 ? other.pathsOut[1] : other.pathsIn[0];
+            (place == 0 ? out : in) = place == 0 ? (other.*outs)[1] : (other.*ins)[0];
         }
         return {out, in};
+    }
+    std::pair<QuadPath, QuadPath> pathsOf(Side corner) const {
+        if (_mesh.faces[corner.face].pathsOut.empty()) {
+            return {};
+        }
+        return flagsOf<QuadPath>(corner, &Face::pathsOut, &Face::pathsIn);
     }
 
     /// A new point, whose rules by all else than paths have made \p other.
@@ -595,6 +628,67 @@ private:
             share = out.GetShare();
         }
         return share * moved + (1 - share) * other;
+    }
+
+    /// The part of a vertex that is not sharp.
+    double smoothShareOf(int v) const {
+        double share = 0;
+        for (RuleShare const &ofRule : ruleShares(_mesh, v)) {
+            bool const isSmooth =
+                ofRule.rule == TaggedRule::Smooth || ofRule.rule == TaggedRule::Dart;
+            share += isSmooth ? ofRule.weight : 0;
+        }
+        return share;
+    }
+
+    /// A moved vertex beside lines of quads: each new point around it whose corner tells a weight has this in place of the
+    /// one that it has otherwise.
+    Point mixBesideQuadLines(int v, Point const &other) const {
+        if (!hasIrregularRules()) {
+            return other;
+        }
+        Point const old = _values.row(v);
+        double const smoothShare = smoothShareOf(v);
+        std::set<int> around;
+        std::map<int, double> byPath; // of new points
+        double ofPaths = 0;           // their share
+        bool haveAllPaths = true;
+        for (Side corner : _mesh.vertices[v].corners) {
+            int const point = _child.fVertices[corner.face][corner.place];
+            around.insert(point);
+            auto const [out, in] = pathsOf(corner);
+            std::optional<double> const weight = WeightByPath(out, in);
+            haveAllPaths = haveAllPaths && weight;
+            byPath[point] = weight.value_or(0);
+            ofPaths = out.GetShare();
+        }
+        double const size = double(around.size());
+        double plain = 1 / (size + 1);
+        if (Irregularities::Vertex const irregular = _irregularities.FindVertex(v);
+            irregular.numFaces > 0) {
+            double const mean = MakeIrregularRule(irregular.numFaces, _mesh.numHexagonalSteps,
+                                                  irregular.formerFaces)
+                                    .meanWeight;
+            plain = irregular.share * mean / size + (1 - irregular.share) * plain;
+        }
+        plain *= smoothShare;
+        Point moved = other;
+        for (Side corner : _mesh.vertices[v].corners) {
+            int const point = _child.fVertices[corner.face][corner.place];
+            if (around.erase(point) == 0) {
+                continue;
+            }
+            double const before =
+                haveAllPaths ? ofPaths * byPath[point] + (1 - ofPaths) * plain : plain;
+            double after = before;
+            for (LineRule const &rule : quadLineRulesOf(corner)) {
+                if (rule.weightOfPoint) {
+                    after += smoothShare * rule.share * (*rule.weightOfPoint - after);
+                }
+            }
+            moved += (after - before) * (_result.row(point) - old);
+        }
+        return moved;
     }
 
     /// The face, or the hexagon whose half it is, V, R, S, W, Q, P; and the corner's place there.
@@ -657,6 +751,12 @@ private:
         Point const vertex = _values.row(v);
         Point const atA = _values.row(a.neighbor);
         Point const atB = _values.row(b.neighbor);
+        bool const isFirst = hasIrregularRules() && _mesh.hasFirstLines &&
+                             _mesh.numHexagonalSteps < kNumLineSteps &&
+                             !_mesh.vertices[v].isNonManifold;
+        if (isFirst && a.isLong == b.isLong) {
+            return a.isLong ? Point((98 * vertex + 15 * atA + 15 * atB) / 128) : vertex;
+        }
         if (a.isLong && b.isLong) {
             return (26 * vertex + 3 * atA + 3 * atB) / 32;
         }

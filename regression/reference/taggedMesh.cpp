@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "quadLineReference.h"
 #include "taggedRules.h"
 
 #include <algorithm>
@@ -109,6 +110,7 @@ TaggedMesh MakeTaggedMesh(TaggedBase const &base) {
             tags.sharpness = kInfiniteSharpness;
         }
     }
+    BeginQuadLines(mesh);
     return mesh;
 }
 
@@ -194,6 +196,7 @@ TaggedMesh MakeValueMesh(TaggedMesh const &mesh, std::vector<int> const &valueIn
             vertex.sharpness = kInfiniteSharpness;
         }
     }
+    BeginQuadLines(result);
     return result;
 }
 

@@ -30,6 +30,8 @@ struct TaggedMesh {
         /// By place: what the face's edges from there and to there came from; see QuadPath.
         std::vector<QuadPath> pathsOut;
         std::vector<QuadPath> pathsIn;
+        std::vector<LinePaths> linesOut; ///< likewise, beside lines of quads
+        std::vector<LinePaths> linesIn;
     };
     /// Where a face runs along an edge: from its corner \p place to the next.
     struct Side {
@@ -77,6 +79,7 @@ struct TaggedMesh {
     // For a refined mesh.
     ReferenceScheme madeBy = ReferenceScheme::Hexagonal;
     int numHexagonalSteps = 0; ///< that made it, behind the last step of another scheme
+    bool hasFirstLines = true; ///< no step of another scheme made it or a mesh before it
     std::vector<VertexOrigin> vertexOrigins;
     std::vector<int> vVertices;              ///< the child of each parent vertex, or -1
     std::vector<std::vector<int>> fVertices; ///< the new vertex of each corner of each parent face

@@ -23,6 +23,7 @@ public:
         _child.freeBoundaries = parent.freeBoundaries;
         _child.madeBy = step.scheme;
         _child.numHexagonalSteps = isHexagonal() ? parent.numHexagonalSteps + 1 : 0;
+        _child.hasFirstLines = isHexagonal() && parent.hasFirstLines;
     }
 
     TaggedMesh Run() {
@@ -45,7 +46,11 @@ public:
 private:
     void makeVertices();
     void findBasePaths();
-    void setPathsOfSide(int face, int start, int end, int endPoint, int startPoint, Side side);
+    void setPathsOfSide(int face, int start, int end, int endPoint, int startPoint, Side side,
+                        bool areOfQuads = true);
+    template <typename PATH>
+    static void setPaths(std::vector<PATH> &out, std::vector<PATH> &in, PATH const &atStart,
+                         PATH const &atEnd, int start, int end, int endPoint, int startPoint);
     void makeFFaces();
     void makeEFaces();
     void makeVFaces();
@@ -84,6 +89,8 @@ private:
         face.holes = std::move(holes);
         face.pathsOut.resize(face.vertices.size());
         face.pathsIn.resize(face.vertices.size());
+        face.linesOut.resize(face.vertices.size());
+        face.linesIn.resize(face.vertices.size());
         _child.faces.push_back(face);
         _child.faceOrigins.push_back(origin);
         return int(_child.faces.size()) - 1;
@@ -155,8 +162,6 @@ void Refinement::makeVertices() {
     }
 }
 
-QuadPath longer(QuadPath const &path, char digit) { return path.Append(digit); }
-
 /// Finds the paths of the parent: those that it has, or those that begin there.
 void Refinement::findBasePaths() {
     for (Face const &face : _parent.faces) {
@@ -194,17 +199,30 @@ void Refinement::findBasePaths() {
 }
 
 /// In a face made for an edge: at the old vertices and the new points of a side.
+template <typename PATH>
+void Refinement::setPaths(std::vector<PATH> &out, std::vector<PATH> &in, PATH const &atStart,
+                          PATH const &atEnd, int start, int end, int endPoint, int startPoint) {
+    in[std::size_t(start)] = atStart.Append('3');
+    out[std::size_t(end)] = atEnd.Append('3');
+    out[std::size_t(endPoint)] = atEnd.Append('1');
+    in[std::size_t(endPoint)] = atEnd.Append('2');
+    out[std::size_t(startPoint)] = atStart.Append('2');
+    in[std::size_t(startPoint)] = atStart.Append('1');
+}
+
 void Refinement::setPathsOfSide(int face, int start, int end, int endPoint, int startPoint,
-                                Side side) {
-    QuadPath const atStart = _pathsOut[side.face][side.place];
-    QuadPath const atEnd = _pathsIn[side.face][nextSide(_parent, side).place];
+                                Side side, bool areOfQuads) {
     Face &made = _child.faces[face];
-    made.pathsIn[start] = longer(atStart, '3');
-    made.pathsOut[end] = longer(atEnd, '3');
-    made.pathsOut[endPoint] = longer(atEnd, '1');
-    made.pathsIn[endPoint] = longer(atEnd, '2');
-    made.pathsOut[startPoint] = longer(atStart, '2');
-    made.pathsIn[startPoint] = longer(atStart, '1');
+    int const behind = nextSide(_parent, side).place;
+    if (areOfQuads) {
+        setPaths(made.pathsOut, made.pathsIn, _pathsOut[side.face][side.place],
+                 _pathsIn[side.face][behind], start, end, endPoint, startPoint);
+    }
+    Face const &from = _parent.faces[side.face];
+    if (!from.linesOut.empty()) {
+        setPaths(made.linesOut, made.linesIn, from.linesOut[side.place], from.linesIn[behind],
+                 start, end, endPoint, startPoint);
+    }
 }
 
 void Refinement::makeFFaces() {
@@ -213,8 +231,12 @@ void Refinement::makeFFaces() {
         origin.face = int(f);
         addFace(_child.fVertices[f], _parent.faces[f].isHalf, _parent.faces[f].holes, origin);
         for (std::size_t i = 0; i < _pathsOut[f].size() && isHexagonal(); ++i) {
-            _child.faces[f].pathsOut[i] = longer(_pathsOut[f][i], '0');
-            _child.faces[f].pathsIn[i] = longer(_pathsIn[f][i], '0');
+            _child.faces[f].pathsOut[i] = _pathsOut[f][i].Append('0');
+            _child.faces[f].pathsIn[i] = _pathsIn[f][i].Append('0');
+        }
+        for (std::size_t i = 0; i < _parent.faces[f].linesOut.size() && isHexagonal(); ++i) {
+            _child.faces[f].linesOut[i] = _parent.faces[f].linesOut[i].Append('0');
+            _child.faces[f].linesIn[i] = _parent.faces[f].linesIn[i].Append('0');
         }
     }
     for (Edge const &edge : _parent.edges) {
@@ -271,9 +293,8 @@ void Refinement::makeEFaces() {
                         !edge.isFree, std::vector<bool>(4, isHole(side)), origin);
             child.sides.push_back({face, 0});
             _placed.insert({face, 0});
-            if (edge.sides.size() == 2 && !isInfinite(edge.sharpness)) {
-                setPathsOfSide(face, 0, 1, 2, 3, side);
-            }
+            setPathsOfSide(face, 0, 1, 2, 3, side,
+                           edge.sides.size() == 2 && !isInfinite(edge.sharpness));
         }
         child.isFree = edge.isFree;
         child.line = edge.line;
@@ -431,6 +452,9 @@ void Refinement::mergeSmoothHalves() {
         whole.pathsOut =
             merge(whole.pathsOut, other.pathsOut, other.pathsOut[1], whole.pathsOut[1]);
         whole.pathsIn = merge(whole.pathsIn, other.pathsIn, whole.pathsIn[0], other.pathsIn[0]);
+        whole.linesOut =
+            merge(whole.linesOut, other.linesOut, other.linesOut[1], whole.linesOut[1]);
+        whole.linesIn = merge(whole.linesIn, other.linesIn, whole.linesIn[0], other.linesIn[0]);
         bool const isHoleA = whole.holes[0];
         bool const isHoleB = other.holes[0];
         whole.holes.assign(std::size_t(size), isHoleA);

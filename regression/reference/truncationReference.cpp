@@ -113,6 +113,7 @@ public:
         _child.chaikin = parent.chaikin;
         _child.freeBoundaries = parent.freeBoundaries;
         _child.madeBy = ReferenceScheme::Truncate;
+        _child.hasFirstLines = false;
     }
 
     TaggedMesh Run() {
