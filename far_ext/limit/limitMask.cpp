@@ -704,12 +704,19 @@ LimitMask FaceLimitMaskFinder::findAfterStep(Index face) const {
         child.crossedFaces = {{0, crossed->end}};
     }
     child.numHexagonalSteps = _level.numHexagonalSteps + 1;
-    if (hasFlags(face)) {
+    if (size == HexIndexing::kNumEFaceCorners) {
         for (QuadCorner const &quad : FindCornerTags(_level.quadCorners, first, first + size)) {
             QuadFlags const flags = AppendToQuadFlags(quad.flags, _level.numHexagonalSteps, 0, 0);
             if (flags.HasAny()) {
                 child.quadCorners.push_back({quad.corner - first, flags});
             }
+        }
+    }
+    for (QuadLineCorner const &tag : FindCornerTags(_level.quadLineCorners, first, first + size)) {
+        QuadLineFlags const flags =
+            AppendToQuadLineFlags(tag.flags, _level.numHexagonalSteps, 0, 0);
+        if (flags.HasAny()) {
+            child.quadLineCorners.push_back({tag.corner - first, flags});
         }
     }
     for (LineRowCorner const &tag : FindCornerTags(_level.lineRowCorners, first, first + size)) {

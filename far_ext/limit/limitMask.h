@@ -97,14 +97,8 @@ private:
     bool isBesideLine(Far::Index face) const {
         Far::Index const first = _level.faceFirstCorner[face];
         Far::Index const end = _level.faceFirstCorner[face + 1];
-        if (_level.quadCorners.HasLines()) {
-            for (QuadCorner const &quad : FindCornerTags(_level.quadCorners, first, end)) {
-                if (quad.flags.HasLine()) {
-                    return true;
-                }
-            }
-        }
-        return !FindCornerTags(_level.lineRowCorners, first, end).empty();
+        return !FindCornerTags(_level.quadLineCorners, first, end).empty() ||
+               !FindCornerTags(_level.lineRowCorners, first, end).empty();
     }
     LimitMask findAfterStep(Far::Index face) const;
     LimitMask stepBack(LimitMask mask, Far::Index face) const;

@@ -415,7 +415,7 @@ int LimitPatchGatherer::countSteps(LimitPatch const &patch) const {
 
 void LimitPatchGatherer::addIrregularVertices(LimitPatch &patch) {
     patch.numHexagonalSteps = countSteps(patch);
-    patch.hasFirstLineMasks = _level.hasFirstLineMasks && _faceMask == FaceMask::Smooth &&
+    patch.hasFirstLineMasks = _level.hasFirstLineMasks &&
                               patch.numHexagonalSteps < kNumLineSteps && hasSharpLines(patch);
     for (Index vert = 0; vert < _numComplete; ++vert) {
         if (IrregularVertex const *const irregular =

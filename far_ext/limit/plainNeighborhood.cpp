@@ -115,12 +115,8 @@ std::vector<VertexMark> markFeatures(Level const &level) {
     for (LineRowCorner const &besideLine : level.lineRowCorners) {
         markFace(level.FindFaceOfCorner(besideLine.corner));
     }
-    if (level.quadCorners.HasLines()) {
-        for (QuadCorner const &quad : level.quadCorners) {
-            if (quad.flags.HasLine()) {
-                markFace(level.FindFaceOfCorner(quad.corner));
-            }
-        }
+    for (QuadLineCorner const &besideLine : level.quadLineCorners) {
+        markFace(level.FindFaceOfCorner(besideLine.corner));
     }
     auto const forEachSharp = [](Buffer<float> const &tags, auto function) {
         for (std::size_t i = 0; i < tags.size(); ++i) {

@@ -2,7 +2,7 @@
 #ifndef OPENSUBDIVHEX_FAR_EXT_RULES_LINE_ROW_H
 #define OPENSUBDIVHEX_FAR_EXT_RULES_LINE_ROW_H
 
-#include "quadPath.h"
+#include "quadLine.h"
 
 #include <cstdint>
 

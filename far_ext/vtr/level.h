@@ -117,6 +117,12 @@ struct LineRowCorner {
     float GetShare() const { return std::min(1.0f, sharpness); }
 };
 
+/// \brief A corner of a quad beside smooth lines, or of what the first steps made of it.
+struct QuadLineCorner {
+    Far::Index corner;
+    QuadLineFlags flags;
+};
+
 /// \brief Tags of corners, each kind ascending by corner.
 ///
 /// Each begins with its corner, and has no padding: behind the corner, equal bytes are equal tags.
@@ -125,11 +131,13 @@ struct CornerTags {
     // Tags of FaceMask::Smooth; empty with other masks.
     std::vector<IrregularCorner> irregularCorners; ///< one for a corner at most
     std::vector<LineRowCorner> lineRowCorners;     ///< more than one between lines
-    QuadCorners quadCorners;                       ///< one for a corner at most
+    std::vector<QuadLineCorner>
+        quadLineCorners;     ///< one for a corner at most; of level 0 with all masks
+    QuadCorners quadCorners; ///< one for a corner at most
 
     bool HasCornerTags() const {
         return !sectorCorners.empty() || !irregularCorners.empty() || !quadCorners.empty() ||
-               !lineRowCorners.empty();
+               !lineRowCorners.empty() || !quadLineCorners.empty();
     }
     /// Calls function(tags of the kind ...) for each kind, of one thing or of several that have members of these names.
     template <typename FUNCTION, typename... THINGS>
@@ -143,6 +151,7 @@ struct CornerTags {
         function(things.sectorCorners...);
         function(things.irregularCorners...);
         function(things.lineRowCorners...);
+        function(things.quadLineCorners...);
     }
 };
 

@@ -13,19 +13,19 @@ using Far::Index;
 
 namespace {
 
-bool isSame(QuadFlags x, QuadFlags y) { return std::memcmp(&x, &y, sizeof x) == 0; }
+bool isSame(QuadFlags x, QuadFlags y) {
+    return x.out == y.out && x.in == y.in && x.sharpness == y.sharpness;
+}
 
 std::size_t hash(QuadFlags const *flags, Index count) {
     constexpr std::uint64_t kFactor = 0x9e3779b97f4a7c15u; // of Fibonacci hashing
     std::uint64_t result = 0;
     for (Index i = 0; i < count; ++i) {
-        std::uint64_t words[5];
-        static_assert(sizeof words == sizeof(QuadFlags));
-        std::memcpy(words, flags + i, sizeof words);
-        for (std::uint64_t const word : words) {
-            result = (result ^ word) * kFactor;
-            result ^= result >> 32;
-        }
+        std::uint64_t bits = 0;
+        static_assert(sizeof bits == sizeof(QuadFlags));
+        std::memcpy(&bits, flags + i, sizeof bits);
+        result = (result ^ bits) * kFactor;
+        result ^= result >> 32;
     }
     return std::size_t(result);
 }
@@ -34,7 +34,6 @@ std::size_t hash(QuadFlags const *flags, Index count) {
 
 void QuadCorners::clear() {
     _numCorners = 0;
-    _hasLines = false;
     _pages.clear();
     _flags.clear();
     _pageOfHash.clear();
@@ -75,14 +74,12 @@ void QuadCorners::push_back(QuadCorner const &quad) {
     }
     _flags[std::size_t(_pages.back()) + std::size_t(quad.corner % kPage)] = quad.flags;
     ++_numCorners;
-    _hasLines = _hasLines || quad.flags.HasLine();
 }
 
 void QuadCorners::Assign(Buffer<QuadFlags> const &flags) {
     struct Page {
         std::size_t hash;
         Index numCorners;
-        bool hasLines;
     };
     clear();
     auto const numCorners = Index(flags.size());
@@ -94,16 +91,14 @@ void QuadCorners::Assign(Buffer<QuadFlags> const &flags) {
         Index const size = getSize(page);
         pages[std::size_t(page)] = {
             hash(first, size),
-            Index(std::count_if(first, first + size, [](QuadFlags of) { return of.HasAny(); })),
-            std::any_of(first, first + size, [](QuadFlags of) { return of.HasLine(); })};
+            Index(std::count_if(first, first + size, [](QuadFlags of) { return of.HasAny(); }))};
     });
     for (Index page = 0; page < Index(pages.size()); ++page) {
-        auto const [hashOfPage, count, hasLines] = pages[std::size_t(page)];
+        auto const [hashOfPage, count] = pages[std::size_t(page)];
         if (count == 0) {
             continue;
         }
         _numCorners += std::size_t(count);
-        _hasLines = _hasLines || hasLines;
         _pages.resize(std::size_t(page), kNoFlags);
         QuadFlags const *const first = flags.data() + std::ptrdiff_t(page) * kPage;
         Index const size = getSize(page);

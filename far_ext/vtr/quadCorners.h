@@ -33,8 +33,6 @@ public:
     bool empty() const { return _numCorners == 0; }
     /// The number of corners with flags.
     std::size_t size() const { return _numCorners; }
-    /// Whether any flag is beside a line.
-    bool HasLines() const { return _hasLines; }
     OPENSUBDIVHEX_API void clear();
     /// A corner behind all others.
     OPENSUBDIVHEX_API void push_back(QuadCorner const &quad);
@@ -67,7 +65,6 @@ private:
     bool areEqual(Index page, QuadFlags const *flags) const;
 
     std::size_t _numCorners = 0;
-    bool _hasLines = false;
     std::vector<Index> _pages; // positions in _flags; one of no flags begins at kNoFlags
     std::vector<QuadFlags> _flags;
     std::unordered_map<std::size_t, Index> _pageOfHash;

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <unordered_map>
+#include <utility>
 #include <vector>
 
 namespace OpenSubdivHex::FarExt::internal {
@@ -18,7 +19,6 @@ namespace {
 using Far::Index;
 using Sdc::Crease;
 
-// The flags of all corners at a vertex inside the mesh that is no line's alone.
 QuadFlags makeBaseFlags(Level const &level, Index vert) {
     Far::ConstIndexArray const faces = level.GetVertexFaces(vert);
     QuadFlag const flag = FindQuadFlag(faces.size(), [&](int i) {
@@ -38,7 +38,7 @@ QuadFlags makeBaseFlags(Level const &level, Index vert) {
     if (Crease::IsInfinite(sharpness)) {
         return {};
     }
-    return {flag, flag, sharpness, {}, {}};
+    return {flag, flag, sharpness};
 }
 
 // Finds the corners beside lines of a level that no step has made.
@@ -75,7 +75,7 @@ private:
     }
 
     Level &_level;
-    std::vector<QuadCorner> _found;
+    std::vector<QuadLineCorner> _found;
     std::unordered_map<Index, std::size_t> _indices; // in _found, by corner
 };
 
@@ -120,9 +120,9 @@ bool QuadLineFinder::isOnQuads(Index vert, int begin, int numFaces) const {
 void QuadLineFinder::add(Index corner, LineFlag out, LineFlag in, LineSharpness sharpness) {
     auto const [found, isNew] = _indices.try_emplace(corner, _found.size());
     if (isNew) {
-        _found.push_back({corner, makeBaseFlags(_level, _level.faceVerts[corner])});
+        _found.push_back({corner, {}});
     }
-    QuadFlags &flags = _found[found->second].flags;
+    QuadLineFlags &flags = _found[found->second].flags;
     int const role = int(out.GetRole());
     if (flags.outLines[role].GetShare() > sharpness.GetShare()) {
         return;
@@ -227,66 +227,98 @@ void QuadLineFinder::Find() {
         addSides(sharp.vert);
     }
     std::sort(_found.begin(), _found.end(),
-              [](QuadCorner const &x, QuadCorner const &y) { return x.corner < y.corner; });
-    _level.quadCorners.clear();
-    for (QuadCorner const &corner : _found) {
-        _level.quadCorners.push_back(corner);
-    }
+              [](QuadLineCorner const &x, QuadLineCorner const &y) { return x.corner < y.corner; });
+    _level.quadLineCorners = std::move(_found);
 }
 
+// Finds the tags that a step makes of tags of the parent's corners, by the paths of flags.
 class QuadFinder {
 public:
     QuadFinder(Refinement const &refinement, Level &level)
         : _refinement(refinement), _parent(*refinement.parent), _level(level) {}
 
-    void Find() {
-        if (!readParent()) {
-            return;
-        }
-        bool const areFew = _parent.numHexagonalSteps + 1 >= kNumStepsToConstantMasks;
-        if (areFew) {
-            for (Index face : listFaces()) {
-                forEachCorner(face, [&](Index corner, QuadFlags flags) {
-                    if (flags.HasAny()) {
-                        _level.quadCorners.push_back({corner, flags});
-                    }
-                });
-            }
-            return;
-        }
-        Buffer<QuadFlags> made;
-        made.Resize(std::size_t(_level.numCorners));
-        ParallelFor(_level.numFaces, [&](Index face) {
-            std::fill_n(made.data() + _level.faceFirstCorner[face], _level.GetFaceSize(face),
-                        QuadFlags());
-            forEachCorner(face, [&](Index corner, QuadFlags flags) {
-                if (flags.HasAny()) {
-                    made[std::size_t(corner)] = flags;
-                }
-            });
-        });
-        _level.quadCorners.Assign(made);
-    }
+    void Find();
+    void FindLines();
 
 private:
-    bool readParent();
-    std::vector<Index> listFaces() const;
-    QuadFlags getParent(Index corner) const {
-        QuadFlags const flags = _parent.quadCorners.GetFlags(corner);
-        return _flags.empty() || flags.HasAny() ? flags : _flags[std::size_t(corner)];
-    }
+    // Flags of the child.
     QuadFlags append(QuadFlags flags, int outDigit, int inDigit) const {
         return AppendToQuadFlags(flags, _parent.numHexagonalSteps, outDigit, inDigit);
     }
-    template <typename FUNCTION>
-    void forEachCorner(Index face, FUNCTION const &function) const;
+    QuadLineFlags append(QuadLineFlags const &flags, int outDigit, int inDigit) const {
+        return AppendToQuadLineFlags(flags, _parent.numHexagonalSteps, outDigit, inDigit);
+    }
+
+    bool readParent();
+    template <typename TAGS>
+    std::vector<Index> listFaces(TAGS const &ofParent) const;
+    template <typename GETPARENT, typename FUNCTION>
+    void forEachCorner(Index face, GETPARENT const &getParent, FUNCTION const &function) const;
 
     Refinement const &_refinement;
     Level const &_parent;
     Level &_level;
-    Buffer<QuadFlags>
-        _flags; // of the parent, by corner, before the first step, but for those beside lines
+    Buffer<QuadFlags> _flags; // of the parent, by corner, before the first step
 };
+
+// The flags of a corner with the one of an edge for both.
+QuadFlags getOut(QuadFlags flags) { return {flags.out, flags.out, flags.sharpness}; }
+QuadFlags getIn(QuadFlags flags) { return {flags.in, flags.in, flags.sharpness}; }
+QuadLineFlags getOut(QuadLineFlags const &flags) { return flags.GetOut(); }
+QuadLineFlags getIn(QuadLineFlags const &flags) { return flags.GetIn(); }
+// One flag of each of two corners at a vertex.
+QuadFlags join(QuadFlags out, QuadFlags in) {
+    return {out.out, in.in, std::max(out.sharpness, in.sharpness)};
+}
+QuadLineFlags join(QuadLineFlags const &out, QuadLineFlags const &in) {
+    return {out.out, in.in, {out.outLines[0], out.outLines[1]}, {in.inLines[0], in.inLines[1]}};
+}
+
+void QuadFinder::Find() {
+    if (!readParent()) {
+        return;
+    }
+    auto const getParent = [this](Index corner) {
+        return _flags.empty() ? _parent.quadCorners.GetFlags(corner) : _flags[std::size_t(corner)];
+    };
+    bool const areFew = _parent.numHexagonalSteps + 1 >= kNumStepsToConstantMasks;
+    if (areFew) {
+        for (Index face : listFaces(_parent.quadCorners)) {
+            forEachCorner(face, getParent, [&](Index corner, QuadFlags flags) {
+                if (flags.HasAny()) {
+                    _level.quadCorners.push_back({corner, flags});
+                }
+            });
+        }
+        return;
+    }
+    Buffer<QuadFlags> made;
+    made.Resize(std::size_t(_level.numCorners));
+    ParallelFor(_level.numFaces, [&](Index face) {
+        std::fill_n(made.data() + _level.faceFirstCorner[face], _level.GetFaceSize(face),
+                    QuadFlags());
+        forEachCorner(face, getParent, [&](Index corner, QuadFlags flags) {
+            if (flags.HasAny()) {
+                made[std::size_t(corner)] = flags;
+            }
+        });
+    });
+    _level.quadCorners.Assign(made);
+}
+
+void QuadFinder::FindLines() {
+    auto const getParent = [this](Index corner) {
+        auto const found = FindCornerTags(_parent.quadLineCorners, corner, corner + 1);
+        return found.empty() ? QuadLineFlags{} : found[0].flags;
+    };
+    for (Index face : listFaces(_parent.quadLineCorners)) {
+        forEachCorner(face, getParent, [&](Index corner, QuadLineFlags const &flags) {
+            if (flags.HasAny()) {
+                _level.quadLineCorners.push_back({corner, flags});
+            }
+        });
+    }
+}
 
 // Returns whether there are any flags.
 bool QuadFinder::readParent() {
@@ -306,20 +338,20 @@ bool QuadFinder::readParent() {
     ParallelFor(_parent.numCorners, [&](Index corner) {
         _flags[std::size_t(corner)] = ofVerts[std::size_t(_parent.faceVerts[corner])];
     });
-    return !_parent.quadCorners.empty() ||
-           std::any_of(ofVerts.begin(), ofVerts.end(),
+    return std::any_of(ofVerts.begin(), ofVerts.end(),
                        [](QuadFlags flags) { return flags.HasAny(); });
 }
 
-// Lists the faces of the level that flags of the parent make which go on, ascending.
-std::vector<Index> QuadFinder::listFaces() const {
+// Lists the faces of the level that tags of the parent make which go on, ascending.
+template <typename TAGS>
+std::vector<Index> QuadFinder::listFaces(TAGS const &ofParent) const {
     std::vector<Index> faces;
     auto const addEFace = [&](Index edge) {
         if (Index const face = _refinement.GetEdgeChildFace(edge); face != Far::INDEX_INVALID) {
             faces.push_back(face);
         }
     };
-    for (auto const &[corner, flags] : _parent.quadCorners) {
+    for (auto const &[corner, flags] : ofParent) {
         if (append(flags, 0, 0).HasAny()) {
             Index const face = _parent.FindFaceOfCorner(corner);
             faces.push_back(face);
@@ -331,9 +363,10 @@ std::vector<Index> QuadFinder::listFaces() const {
     return faces;
 }
 
-// Calls function(corner, flags) for the corners of a face.
-template <typename FUNCTION>
-void QuadFinder::forEachCorner(Index face, FUNCTION const &function) const {
+// Calls function(corner, flags) for the corners of a face, given those of the parent's corners.
+template <typename GETPARENT, typename FUNCTION>
+void QuadFinder::forEachCorner(Index face, GETPARENT const &getParent,
+                               FUNCTION const &function) const {
     Index const first = _level.faceFirstCorner[face];
     int const size = _level.GetFaceSize(face);
     if (face < _level.numFFaces) {
@@ -343,52 +376,34 @@ void QuadFinder::forEachCorner(Index face, FUNCTION const &function) const {
         }
         return;
     }
+    bool const isHalf = _level.IsHalfFace(face);
     if (face >= _level.numFaces - _level.numVFaces ||
-        (size != HexIndexing::kNumEFaceCorners && !_level.IsHalfFace(face))) {
+        (size != HexIndexing::kNumEFaceCorners && !isHalf)) {
         return;
     }
     Index const edge = _refinement.GetEFaceParent(face);
-    QuadFlags made[HexIndexing::kNumEFaceCorners];
-    bool const isHalf = size != HexIndexing::kNumEFaceCorners;
+    decltype(getParent(first)) made[HexIndexing::kNumEFaceCorners];
     for (int side = 0; side < (isHalf ? 1 : 2); ++side) {
         EFaceSide const &places = isHalf      ? kBoundaryEFaceSide
                                   : side == 0 ? kEFaceSideA
                                               : kEFaceSideB;
         Index const start = _parent.GetSideCorner(edge, side);
         Index const end = _parent.GetNextCorner(_parent.edgeFaces[edge][side], start);
-        QuadFlags const atStart = getParent(start);
-        QuadFlags const atEnd = getParent(end);
-        // A flag with both edges of a corner, or with one of them.
-        auto const atOut = [](QuadFlags const &of) {
-            QuadFlags flags = of;
-            flags.in = of.out;
-            std::copy_n(of.outLines, 2, flags.inLines);
-            return flags;
-        };
-        auto const atIn = [](QuadFlags const &of) {
-            QuadFlags flags = of;
-            flags.out = of.in;
-            std::copy_n(of.inLines, 2, flags.outLines);
-            return flags;
-        };
-        QuadFlags const fromStart = atOut(atStart);
-        QuadFlags const fromEnd = atIn(atEnd);
-        made[places.endFVertex] = append(fromEnd, 1, 2);
-        made[places.startFVertex] = append(fromStart, 2, 1);
+        auto const atStart = getOut(getParent(start));
+        auto const atEnd = getIn(getParent(end));
+        made[places.endFVertex] = append(atEnd, 1, 2);
+        made[places.startFVertex] = append(atStart, 2, 1);
         if (isHalf) {
-            made[places.startVertex] = append(fromStart, 3, 3);
+            made[places.startVertex] = append(atStart, 3, 3);
             made[places.startVertex].out = 0;
-            made[places.endVertex] = append(fromEnd, 3, 3);
+            made[places.endVertex] = append(atEnd, 3, 3);
             made[places.endVertex].in = 0;
             continue;
         }
         Index const otherStart = _parent.GetSideCorner(edge, 1 - side);
         Index const otherEnd = _parent.GetNextCorner(_parent.edgeFaces[edge][1 - side], otherStart);
-        QuadFlags atVertex = atIn(getParent(otherEnd)); // on the other side
-        atVertex.in = fromStart.in;
-        std::copy_n(fromStart.inLines, 2, atVertex.inLines);
-        atVertex.sharpness = std::max(atVertex.sharpness, atStart.sharpness);
-        made[places.startVertex] = append(atVertex, 3, 3);
+        // At the start, from both sides.
+        made[places.startVertex] = append(join(getIn(getParent(otherEnd)), atStart), 3, 3);
     }
     for (int local = 0; local < size; ++local) {
         function(first + local, made[local]);
@@ -401,8 +416,11 @@ void FindBaseQuadCorners(Level &level) { QuadLineFinder(level).Find(); }
 
 void FindQuadCorners(FaceMask faceMask, Refinement const &refinement, Level &level) {
     level.quadCorners.clear();
+    level.quadLineCorners.clear();
     if (faceMask == FaceMask::Smooth && level.numHexagonalSteps > 0 && level.hasFullTopology) {
-        QuadFinder(refinement, level).Find();
+        QuadFinder finder(refinement, level);
+        finder.Find();
+        finder.FindLines();
     }
 }
 

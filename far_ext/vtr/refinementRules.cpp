@@ -103,6 +103,7 @@ struct FaceTags {
     TagRange<SectorCorner> sectorCorners;
     TagRange<IrregularCorner> irregularCorners;
     TagRange<LineRowCorner> lineRowCorners;
+    TagRange<QuadLineCorner> quadLineCorners;
     std::array<QuadFlags, kHexagon> quadFlags; // by corner; none of larger faces have any
 
     auto GetQuadWords() const {
@@ -247,7 +248,9 @@ void RefinementRules::makeRuledVertices(bool hasIrregular) {
 // corners; with paths, all have that which the vertex's sharpness leaves.  Then weights beside lines of quads take their
 // share of each F-vertex that has one.
 void RefinementRules::makeVertexWeights() {
-    if ((_level.quadCorners.empty() && _level.lineRowCorners.empty()) || _level.numVertices == 0) {
+    if ((_level.quadCorners.empty() && _level.quadLineCorners.empty() &&
+         _level.lineRowCorners.empty()) ||
+        _level.numVertices == 0) {
         return;
     }
     struct OfCorner {
@@ -325,14 +328,18 @@ void RefinementRules::makeVertexWeights() {
         double &ofVertex = rule.weights[rule.numSources - 1];
         weights.assign(1, 0.0);
         for (int i = 0; i < _level.GetNumVertexFaces(vert); ++i) {
-            QuadFlags const flags =
-                _level.quadCorners.GetFlags(_level.GetVertexCorner(_level.vertFirstFace[vert] + i));
+            Index const corner = _level.GetVertexCorner(_level.vertFirstFace[vert] + i);
             double const before = rule.GetFaceWeight(i);
             double change = 0;
-            for (LineRole const role : kLineRoles) {
-                QuadLineRow const own = FindQuadLineRow(_level.numHexagonalSteps, flags, role);
-                if (own.row.vertexWeight >= 0) {
-                    change += smoothShare * own.share * (own.row.vertexWeight - before - change);
+            for (QuadLineCorner const &tag :
+                 FindCornerTags(_level.quadLineCorners, corner, corner + 1)) {
+                for (LineRole const role : kLineRoles) {
+                    QuadLineRow const own =
+                        FindQuadLineRow(_level.numHexagonalSteps, tag.flags, role);
+                    if (own.row.vertexWeight >= 0) {
+                        change +=
+                            smoothShare * own.share * (own.row.vertexWeight - before - change);
+                    }
                 }
             }
             weights.push_back(before + change);
@@ -367,7 +374,7 @@ void RefinementRules::makeVertexWeights() {
         for (Index const vert : listVertices(_level.quadCorners, allMatter)) {
             setWeights(vert, 1, findOfQuad);
         }
-    } else if (!_level.quadCorners.empty() && _level.numHexagonalSteps > 0) {
+    } else if (!_level.quadCorners.empty()) {
         Buffer<OfCorner> ofCorners;
         ofCorners.Resize(std::size_t(_level.numCorners));
         ParallelFor(_level.numCorners,
@@ -376,16 +383,13 @@ void RefinementRules::makeVertexWeights() {
             setWeights(vert, 1, [&](Index corner) { return ofCorners[std::size_t(corner)]; });
         }
     }
-    if (_level.quadCorners.HasLines()) {
-        auto const hasWeight = [this](QuadCorner const &quad) {
-            return std::any_of(std::begin(kLineRoles), std::end(kLineRoles), [&](LineRole role) {
-                return FindQuadLineRow(_level.numHexagonalSteps, quad.flags, role)
-                           .row.vertexWeight >= 0;
-            });
-        };
-        for (Index const vert : listVertices(_level.quadCorners, hasWeight)) {
-            setBesideLine(vert);
-        }
+    auto const hasWeight = [this](QuadLineCorner const &tag) {
+        return std::any_of(std::begin(kLineRoles), std::end(kLineRoles), [&](LineRole role) {
+            return FindQuadLineRow(_level.numHexagonalSteps, tag.flags, role).row.vertexWeight >= 0;
+        });
+    };
+    for (Index const vert : listVertices(_level.quadLineCorners, hasWeight)) {
+        setBesideLine(vert);
     }
     auto const findBesideLine = [this](Index corner) -> OfCorner {
         LineShare const line = findLineShare(
@@ -505,7 +509,7 @@ private:
     Level const &_level;
     FaceMask _faceMask;
     bool _isVertex;
-    bool _hasQuadRows; // level 0 has quadCorners for all masks
+    bool _hasQuadRows; // level 0 has quadLineCorners for all masks
     IrregularMasks _masks;
     QuadMask _quadMask;
     std::unordered_map<int, std::vector<double>> _halfFaceWeights; // by number of corners
@@ -560,7 +564,7 @@ void RefinementRules::DenseRuleMaker::readTags(Index face, FaceTags &tags) {
             }
         },
         _level, tags);
-    for (int i = 0; i < kHexagon && _hasQuadRows; ++i) {
+    for (int i = 0; i < kHexagon; ++i) {
         tags.quadFlags[std::size_t(i)] =
             i < tags.size ? _level.quadCorners.GetFlags(tags.firstCorner + i) : QuadFlags();
     }
@@ -569,20 +573,20 @@ void RefinementRules::DenseRuleMaker::readTags(Index face, FaceTags &tags) {
 auto RefinementRules::DenseRuleMaker::findPathRows(FaceTags const &tags, int corner) const
     -> PathRows {
     PathRows result;
-    if (corner >= kHexagon || tags.size > kHexagon) {
+    if (!_hasQuadRows || corner >= kHexagon || tags.size > kHexagon) {
         return result;
     }
-    QuadFlags const flags = tags.quadFlags[std::size_t(corner)];
-    if (!flags.HasAny()) {
-        return result;
-    }
-    if (tags.size == kHexagon) {
+    if (QuadFlags const flags = tags.quadFlags[std::size_t(corner)];
+        flags.HasAny() && tags.size == kHexagon) {
         result.inside = FindQuadRow(_level.numHexagonalSteps, flags);
         result.ofInside = result.inside.mask ? double(flags.GetShare()) : 0;
     }
-    for (LineRole const role : kLineRoles) {
-        if (flags.HasLine()) {
-            result.besideLines[int(role)] = FindQuadLineRow(_level.numHexagonalSteps, flags, role);
+    for (QuadLineCorner const &tag : tags.quadLineCorners) {
+        if (tag.corner == tags.firstCorner + corner) {
+            for (LineRole const role : kLineRoles) {
+                result.besideLines[int(role)] =
+                    FindQuadLineRow(_level.numHexagonalSteps, tag.flags, role);
+            }
         }
     }
     return result;
@@ -591,9 +595,7 @@ auto RefinementRules::DenseRuleMaker::findPathRows(FaceTags const &tags, int cor
 // The first face with tags of corners behind those that have been read, mostly the next one; else the end.
 Index RefinementRules::DenseRuleMaker::findNextFace(FaceTags const &read) {
     Index const endRead = _level.faceFirstCorner[_endRead];
-    if (!_hasQuadRows) {
-        _nextQuad = _level.numCorners;
-    } else if (_nextQuad < endRead) {
+    if (_nextQuad < endRead) {
         _nextQuad = QuadCorners::Iterator(_level.quadCorners, endRead, _level.numCorners)->corner;
     }
     Index corner = _nextQuad;

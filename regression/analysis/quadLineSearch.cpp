@@ -5,7 +5,7 @@
 #include "ripple.h"
 
 #include "far_ext/rules/mask.h"
-#include "far_ext/rules/quadPath.h"
+#include "far_ext/rules/quadLine.h"
 
 #include <Eigen/Dense>
 
@@ -25,7 +25,7 @@ namespace {
 using FarExt::FaceMask;
 using FarExt::internal::Level;
 using FarExt::internal::LineRole;
-using FarExt::internal::QuadCorner;
+using FarExt::internal::QuadLineCorner;
 using FarExt::internal::QuadLineRow;
 
 constexpr int kSidesOfQuad = 4;
@@ -108,10 +108,7 @@ SearchRows makeQuadLineStart() {
 
 std::vector<CornerRow> findQuadLineRows(Level const &level) {
     std::vector<CornerRow> result(std::size_t(level.numCorners));
-    for (QuadCorner const &quad : level.quadCorners) {
-        if (!quad.flags.HasLine()) {
-            continue;
-        }
+    for (QuadLineCorner const &quad : level.quadLineCorners) {
         QuadLineRow ofCorner = {FarExt::internal::kNoMaskRow, false, 0};
         for (LineRole const role : FarExt::internal::kLineRoles) {
             QuadLineRow const ofRole =

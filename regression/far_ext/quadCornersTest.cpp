@@ -22,12 +22,9 @@ std::vector<QuadCorner> makeCorners() {
     for (int corner = 0; corner < kNumCorners; ++corner) {
         bool const isGap = corner > 3000 && corner < 4001;
         if (corner % 6 < 4 && !isGap) {
-            corners.push_back({corner,
-                               {FarExt::internal::QuadFlag(1 + corner % 6),
-                                1,
-                                corner == kOdd ? 0.5f : 0,
-                                {},
-                                {}}});
+            corners.push_back(
+                {corner,
+                 {FarExt::internal::QuadFlag(1 + corner % 6), 1, corner == kOdd ? 0.5f : 0}});
         }
     }
     return corners;

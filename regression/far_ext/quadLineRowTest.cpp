@@ -3,7 +3,7 @@
 // The masks beside lines of quads: where they apply, and that they are those of the reference there and elsewhere.
 #include "expectations.h"
 
-#include "far_ext/rules/quadPath.h"
+#include "far_ext/rules/quadLine.h"
 #include "far_ext/vtr/hierarchy.h"
 #include "regression/shapes/featureShapes.h"
 #include "regression/shapes/torus.h"
@@ -24,7 +24,7 @@ namespace {
 using FarExt::internal::kLineRoles;
 using FarExt::internal::kNumLineSteps;
 using FarExt::internal::LineRole;
-using FarExt::internal::QuadCorner;
+using FarExt::internal::QuadLineCorner;
 using OpenSubdiv::Sdc::Crease;
 
 constexpr int kHexagon = 6;
@@ -101,8 +101,8 @@ void expectSameAsReference(Shape const &shape, Sdc::Options options = edgeOption
 
 int countLineCorners(Shape const &shape, int level, LineRole role) {
     auto const refiner = CreateRefiner(shape, ReferenceMask::Smooth, kNumLineSteps, edgeOptions());
-    auto const &corners = refiner->GetHierarchy().mesh.levels[std::size_t(level)].quadCorners;
-    return int(std::count_if(corners.begin(), corners.end(), [role](QuadCorner const &corner) {
+    auto const &corners = refiner->GetHierarchy().mesh.levels[std::size_t(level)].quadLineCorners;
+    return int(std::count_if(corners.begin(), corners.end(), [role](QuadLineCorner const &corner) {
         return corner.flags.outLines[int(role)].GetShare() > 0;
     }));
 }

@@ -293,8 +293,10 @@ void Refinement::makeEFaces() {
                         !edge.isFree, std::vector<bool>(4, isHole(side)), origin);
             child.sides.push_back({face, 0});
             _placed.insert({face, 0});
-            setPathsOfSide(face, 0, 1, 2, 3, side,
-                           edge.sides.size() == 2 && !isInfinite(edge.sharpness));
+            if (!edge.isFree) {
+                setPathsOfSide(face, 0, 1, 2, 3, side,
+                               edge.sides.size() == 2 && !isInfinite(edge.sharpness));
+            }
         }
         child.isFree = edge.isFree;
         child.line = edge.line;
