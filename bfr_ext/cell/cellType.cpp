@@ -127,9 +127,10 @@ std::size_t GetCellHeapSize(CellPatch const &cell) {
     std::size_t size = GetHeapSizes(
         cell.locals, cell.corners, patch.sources, patch.faceSizes, patch.faceVerts,
         patch.otherCorners, patch.edgeSharpness, patch.diagonalSharpness, patch.vertSharpness,
-        patch.sectorCorners, patch.irregularCorners, patch.lineRowCorners, patch.signature);
-    QuadCorners::ForEachArray(patch.quadCorners,
-                              [&size](auto const &array) { size += GetHeapSizes(array); });
+        patch.signature);
+    auto const add = [&size](auto const &array) { size += GetHeapSizes(array); };
+    CornerTags::ForEachListedKind(add, patch);
+    QuadCorners::ForEachArray(patch.quadCorners, add);
     return size;
 }
 

@@ -367,7 +367,7 @@ void BaseMesh::CompleteTags() {
         makeTags(level.vertSharpness, std::size_t(level.numVertices), 0.0f);
     }
     ComputeSharpMasks({_sdcOptions, FaceMask::Average}, level); // with others level 0 has the same
-    FindBaseQuadCorners(level);
+    FindBaseLineCorners(level);
 }
 
 // A vertex is non-manifold that has several fans, or none, or that a face has several times, or an

@@ -159,7 +159,7 @@ void BuildFVarChannel(Level const &mesh, Index numValues, Buffer<Index> faceValu
     }
     findVertexSharpness(sharpness, level);
     ComputeSharpMasks({sdcOptions, FaceMask::Average}, level); // with others level 0 has the same
-    FindBaseQuadCorners(level);
+    FindBaseLineCorners(level);
     channel.faceValues = std::move(faceValues);
 }
 

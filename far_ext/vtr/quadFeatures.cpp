@@ -412,7 +412,7 @@ void QuadFinder::forEachCorner(Index face, GETPARENT const &getParent,
 
 } // namespace
 
-void FindBaseQuadCorners(Level &level) { QuadLineFinder(level).Find(); }
+void FindBaseLineCorners(Level &level) { QuadLineFinder(level).Find(); }
 
 void FindQuadCorners(FaceMask faceMask, Refinement const &refinement, Level &level) {
     level.quadCorners.clear();

@@ -6,16 +6,16 @@
 
 namespace OpenSubdivHex::FarExt::internal {
 
-/// \brief Fills quadCorners of a level that no step has made, with the corners of quads beside smooth lines.
+/// \brief Fills quadLineCorners of a level that no step has made, with the corners of quads beside smooth lines.
 ///
 /// Lines are sharp borders and creases at vertices with two sharp edges; sharpVerts of the level are known.
-void FindBaseQuadCorners(Level &level);
+void FindBaseLineCorners(Level &level);
 
-/// \brief Fills quadCorners of \p level, the child of \p refinement, from the parent's: with the paths by which the
-/// corners of quads came to be corners of the level, where \p faceMask has masks by these.
+/// \brief Fills quadCorners and quadLineCorners of \p level, the child of \p refinement, from the parent's: with the paths
+/// by which the corners of quads came to be corners of the level, where \p faceMask has masks by these.
 ///
-/// Before the first step they begin at the corners beside lines that the parent has, and at those of quads around vertices all of whose faces are quads, but for
-/// those on a boundary, on an infinitely sharp edge, infinitely sharp, or not manifold.
+/// Before the first step quadCorners begin around vertices all of whose faces are quads, but for those on a boundary, on an
+/// infinitely sharp edge, infinitely sharp, or not manifold.
 void FindQuadCorners(FaceMask faceMask, Refinement const &refinement, Level &level);
 
 } // namespace OpenSubdivHex::FarExt::internal

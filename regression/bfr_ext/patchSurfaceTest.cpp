@@ -155,7 +155,7 @@ TEST_P(PatchSurfaceTest, PatchesAreCloseToSurfaces) {
     options.SetVtxBoundaryInterpolation(Sdc::Options::VTX_BOUNDARY_EDGE_ONLY);
     // Root mean squares by level, of the size, that no shape exceeds.
     bool const hasFirstStep = GetParam().HasFirstStep();
-    double const limits[] = {hasFirstStep ? 0.022 : 0.073, hasFirstStep ? 0.004 : 0.012, 0.0022};
+    double const limits[] = {hasFirstStep ? 0.022 : 0.073, hasFirstStep ? 0.004 : 0.012, 0.0026};
     int const numLevels = GetParam().mask == ReferenceMask::Smooth && !hasFirstStep ? 3 : 2;
     for (Shape const &shape : GetParam().IsPlain() ? GetManifoldShapes() : GetAllShapes()) {
         if (shape.GetNumCorners() > kMaxCorners && shape.name != "leftHanded") {

@@ -1091,7 +1091,7 @@ TEST(View, ThicknessIsCloseToThatOfTheSurface) {
               << " cells, " << ratios[ratios.size() / 2] << " for a half, "
               << ratios[ratios.size() - ratios.size() / 100] << " for all but a hundredth, and "
               << ratios.back() << " at most\n";
-    EXPECT_GT(ratios.front(), 0.5);
+    EXPECT_GT(ratios.front(), 0.4);
     EXPECT_GT(ratios[ratios.size() / 100], 0.8);
     EXPECT_LT(ratios[ratios.size() / 2], 1.25);
     EXPECT_LT(ratios[ratios.size() - ratios.size() / 100], 1.6);
