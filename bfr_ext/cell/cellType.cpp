@@ -124,10 +124,9 @@ std::uint64_t takeNumber() {
 
 std::size_t GetCellHeapSize(CellPatch const &cell) {
     LimitPatch const &patch = cell.patch;
-    std::size_t size = GetHeapSizes(
-        cell.locals, cell.corners, patch.sources, patch.faceSizes, patch.faceVerts,
-        patch.otherCorners, patch.edgeSharpness, patch.diagonalSharpness, patch.vertSharpness,
-        patch.signature);
+    std::size_t size = GetHeapSizes(cell.locals, cell.corners, patch.sources, patch.faceSizes,
+                                    patch.faceVerts, patch.otherCorners, patch.edgeSharpness,
+                                    patch.diagonalSharpness, patch.vertSharpness, patch.signature);
     auto const add = [&size](auto const &array) { size += GetHeapSizes(array); };
     CornerTags::ForEachListedKind(add, patch);
     QuadCorners::ForEachArray(patch.quadCorners, add);

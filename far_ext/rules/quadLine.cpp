@@ -50,7 +50,9 @@ LinePath getLinePath(QuadLineFlag flag) {
     return {{lines / kNumAt, lines % kNumAt}, (flag - 1) % kNumLinePaths};
 }
 
-struct LineTableRow {
+namespace quadLineTable {
+
+struct Row {
     int numQuads;
     char flag;
     char const *path;
@@ -58,9 +60,11 @@ struct LineTableRow {
     int parts[kHexagon];
 };
 constexpr int kNone = MaskTable::kNone;
-constexpr LineTableRow kLineTable[] = {
+constexpr Row kRows[] = {
 #include "quadLineRows.inl"
 };
+
+} // namespace quadLineTable
 
 std::size_t getPlaceBesideLine(int numSteps, LineRole role, int line, int digits) {
     int const ofRole = role == LineRole::Away ? line : kNumAway + line;
@@ -71,7 +75,7 @@ MaskTable const &getRowsBesideLines() {
     static MaskTable const kRows = [] {
         constexpr char kFlags[] = "abcdvtVT"; // as LineFlag::Kind has them
         MaskTable rows(getPlaceBesideLine(kNumLineSteps, LineRole::Away, 0, 0));
-        for (LineTableRow const &row : kLineTable) {
+        for (quadLineTable::Row const &row : quadLineTable::kRows) {
             LineFlag const flag = {row.numQuads,
                                    LineFlag::Kind(std::strchr(kFlags, row.flag) - kFlags)};
             rows.Add(getPlaceBesideLine(int(std::strlen(row.path)), flag.GetRole(), getLine(flag),
