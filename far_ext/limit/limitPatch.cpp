@@ -415,8 +415,8 @@ int LimitPatchGatherer::countSteps(LimitPatch const &patch) const {
 
 void LimitPatchGatherer::addIrregularVertices(LimitPatch &patch) {
     patch.numHexagonalSteps = countSteps(patch);
-    patch.hasFirstLineMasks = _level.hasFirstLineMasks &&
-                              patch.numHexagonalSteps < kNumLineSteps && hasSharpLines(patch);
+    patch.hasFirstLineMasks =
+        _level.hasFirstLineMasks && patch.numHexagonalSteps < kNumLineSteps && hasSharpLines(patch);
     for (Index vert = 0; vert < _numComplete; ++vert) {
         if (IrregularVertex const *const irregular =
                 _level.FindIrregularVertex(patch.sources[vert])) {
