@@ -31,7 +31,8 @@ int getMirrored(LineFace face, int place) {
 }
 
 std::size_t getPlaceOfLine(int numSteps, LineFace face, int place) {
-    return std::size_t((numSteps * kNumLineFaces + int(face)) * kHexagon + place);
+    int const number = (numSteps * kNumLineFaces + int(face)) * kHexagon + place;
+    return std::size_t(number);
 }
 
 MaskTable const &getTruncatedRows() {

@@ -15,12 +15,17 @@ namespace OpenSubdivHex::FarExt::internal {
 namespace {
 
 constexpr int kNumLinePaths = kQuadPathBase * kQuadPathBase; // of levels with masks beside lines
-// Kinds of flags beside lines; 0 is of no line.  At a line there are as many as quads there; away from one four, but for one
-// quad, which has none behind.
-constexpr int kNumAt = 1 + LineFlag::kMaxQuads * (LineFlag::kMaxQuads + 1) / 2;
+// Kinds of flags beside lines; 0 is of no line.  At a line there are as many as quads there, away from one four.
+constexpr int countKindsAt(int maxQuads) {
+    int result = 1;
+    for (int numQuads = LineFlag::kMinQuads; numQuads <= maxQuads; ++numQuads) {
+        result += numQuads;
+    }
+    return result;
+}
+constexpr int kNumAt = countKindsAt(LineFlag::kMaxQuads);
 constexpr int kNumKindsAway = LineFlag::kNumKinds - LineFlag::kDown;
-constexpr int kFirstOfTwoAway = 1 + 2;
-constexpr int kNumAway = kFirstOfTwoAway + (LineFlag::kMaxQuads - 1) * kNumKindsAway;
+constexpr int kNumAway = 1 + (LineFlag::kMaxQuads - LineFlag::kMinQuads + 1) * kNumKindsAway;
 
 // One more than these are flags.
 struct LinePath {
@@ -32,11 +37,10 @@ struct LinePath {
 
 int getLine(LineFlag flag) {
     if (flag.GetRole() == LineRole::Away) {
-        int const kind = flag.kind - LineFlag::kDown;
-        return flag.numQuads == 1 ? 1 + kind
-                                  : kFirstOfTwoAway + (flag.numQuads - 2) * kNumKindsAway + kind;
+        return 1 + (flag.numQuads - LineFlag::kMinQuads) * kNumKindsAway + flag.kind -
+               LineFlag::kDown;
     }
-    return 1 + flag.numQuads * (flag.numQuads - 1) / 2 + flag.kind;
+    return countKindsAt(flag.numQuads - 1) + flag.kind;
 }
 
 QuadLineFlag makeLineFlag(LinePath const &path) {
@@ -68,7 +72,8 @@ constexpr Row kRows[] = {
 
 std::size_t getPlaceBesideLine(int numSteps, LineRole role, int line, int digits) {
     int const ofRole = role == LineRole::Away ? line : kNumAway + line;
-    return std::size_t((numSteps * (kNumAway + kNumAt) + ofRole) * kNumLinePaths + digits);
+    int const number = (numSteps * (kNumAway + kNumAt) + ofRole) * kNumLinePaths + digits;
+    return std::size_t(number);
 }
 
 MaskTable const &getRowsBesideLines() {
@@ -143,26 +148,21 @@ QuadLineRow FindQuadLineRow(int numSteps, QuadLineFlags const &flags, LineRole r
     bool const isBackwards = in < out;
     auto const [line, digits] = isBackwards ? in : out;
     MaskTable const &rows = getRowsBesideLines();
-    // Away from one quad flags are at a regular line, too.
-    bool const isBesideOne = role == LineRole::Away && line < kFirstOfTwoAway;
     std::size_t place = getPlaceBesideLine(numSteps, role, line, digits);
     if (role == LineRole::Away && !rows.Has(place)) {
-        int const kind = (line - 1) % 2;
-        bool const isBehind = !isBesideOne && (line - kFirstOfTwoAway) % kNumKindsAway > 1;
-        if (isBesideOne) {
-            LineFlag const atLine = {2, LineFlag::Kind(LineFlag::kAtLine + kind)};
-            place = getPlaceBesideLine(numSteps, LineRole::At, getLine(atLine), digits);
-        } else if (!isBehind) {
-            place = getPlaceBesideLine(numSteps, role, kFirstOfTwoAway + kind, digits);
-        }
+        // Beside other vertices flags at the edge of the line have the rows of two quads.
+        int const kind = (line - 1) % kNumKindsAway;
+        bool const isBehind = kind >= LineFlag::kDownBehind - LineFlag::kDown;
+        place = isBehind ? place : getPlaceBesideLine(numSteps, role, 1 + kind, digits);
     }
     if (!rows.Has(place)) {
         return kNoRow;
     }
     // The E-face of an edge of the line, and what F-faces are made of it.
-    bool isAlong = isBesideOne && line == getLine({1, LineFlag::kDown});
-    for (int numQuads = 1; numQuads <= LineFlag::kMaxQuads && role == LineRole::At; ++numQuads) {
-        isAlong = isAlong || line == getLine({numQuads, LineFlag::kAtLine});
+    bool isAlong = false;
+    for (int numQuads = LineFlag::kMinQuads; numQuads <= LineFlag::kMaxQuads; ++numQuads) {
+        isAlong =
+            isAlong || (role == LineRole::At && line == getLine({numQuads, LineFlag::kAtLine}));
     }
     int const behindFirst = numSteps == kNumLineSteps - 1 ? digits % kQuadPathBase : 0;
     bool const isOfHalf = isAlong && digits > 0 && behindFirst == 0;

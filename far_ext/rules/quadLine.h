@@ -24,14 +24,14 @@ inline constexpr LineRole kLineRoles[] = {LineRole::Away, LineRole::At};
 
 /// \brief A flag of a quad beside a smooth line, before the first step.
 ///
-/// The line has 1 to kMaxQuads quads on this side of one of its vertices, L.
+/// The line has kMinQuads to kMaxQuads quads on this side of one of its vertices, L.
 struct LineFlag {
+    static constexpr int kMinQuads = 2;
     static constexpr int kMaxQuads = 4;
     enum Kind : std::int8_t {
         /// At L; counted from the line: kAtLine along it, kAtLine + 1 with the other edge of that quad ...
         kAtLine,
-        /// At another end of an edge of L, with that edge, in a quad that has an edge of the line at L.  If L has one quad,
-        /// at the next vertex of the line, which has two.
+        /// At another end of an edge of L, with that edge, in a quad that has an edge of the line at L.
         kDown = 4,
         kTop,        ///< at that corner, with the other edge
         kDownBehind, ///< as kDown, in a quad that has no edge of the line at L

@@ -52,7 +52,8 @@ constexpr TableRow kTable[] = {
 };
 
 std::size_t getPlace(int numSteps, int vertex, int digits) {
-    return std::size_t((numSteps * kNumVertices + vertex) * kNumPaths + digits);
+    int const number = (numSteps * kNumVertices + vertex) * kNumPaths + digits;
+    return std::size_t(number);
 }
 
 // The rows, those of constant levels by their endings.

@@ -67,7 +67,6 @@ private:
     void addSide(Index vert, int begin, int numFaces, LineSharpness sharpness);
     void addOtherEnd(Index corner, Index face, Index edge, LineFlag::Kind down, int numQuads,
                      LineSharpness sharpness);
-    float addBesideOne(Index corner, Index face, bool isOut, LineSharpness sharpness);
     bool isOnQuads(Index vert, int begin, int numFaces) const;
     Index getFaceOf(Index vert, int i) const {
         Far::ConstIndexArray const faces = _level.GetVertexFaces(vert);
@@ -149,7 +148,8 @@ void QuadLineFinder::addSides(Index vert) {
 }
 
 void QuadLineFinder::addSide(Index vert, int begin, int numFaces, LineSharpness sharpness) {
-    if (numFaces > LineFlag::kMaxQuads || !isOnQuads(vert, begin, numFaces)) {
+    if (numFaces < LineFlag::kMinQuads || numFaces > LineFlag::kMaxQuads ||
+        !isOnQuads(vert, begin, numFaces)) {
         return;
     }
     // Flags are counted from both ends of the line.
@@ -163,11 +163,7 @@ void QuadLineFinder::addSide(Index vert, int begin, int numFaces, LineSharpness 
         Index const edge = edges[(begin + i) % edges.size()];
         Index const corner = _level.GetVertexCorner(_level.vertFirstFace[vert] +
                                                     (begin + i) % _level.GetNumVertexFaces(vert));
-        LineSharpness own = sharpness;
-        if (numFaces == 2) {
-            own.cross = std::max(own.cross, addBesideOne(corner, face, i == 0, sharpness));
-        }
-        add(corner, makeFlag(2 * i), makeFlag(2 * i + 1), own);
+        add(corner, makeFlag(2 * i), makeFlag(2 * i + 1), sharpness);
         // The other ends of the edges of this face but those of the line.
         bool const isAtLine = i == 0 || i == numFaces - 1;
         LineFlag::Kind const down = isAtLine ? LineFlag::kDown : LineFlag::kDownBehind;
@@ -179,24 +175,6 @@ void QuadLineFinder::addSide(Index vert, int begin, int numFaces, LineSharpness 
             addOtherEnd(before, face, _level.faceEdges[before], down, numFaces, sharpness);
         }
     }
-}
-
-// The corner in a quad that a vertex next to it on the line has alone: with its edge that begins there, or with the one
-// that ends there.  Returns how sharp the line is at that vertex; 0 where it has other faces.
-float QuadLineFinder::addBesideOne(Index corner, Index face, bool isOut, LineSharpness sharpness) {
-    Index const atOne =
-        isOut ? _level.GetNextCorner(face, corner) : _level.GetPrevCorner(face, corner);
-    Index const vert = _level.faceVerts[atOne];
-    Index const edge = _level.faceEdges[isOut ? atOne : _level.GetPrevCorner(face, atOne)];
-    SharpEdges const edges = findSharpEdges(vert);
-    sharpness.line = std::min({sharpness.line, edges.sharpness[1], getSharpness(edge)});
-    sharpness.cross = std::max(sharpness.cross, edges.GetCross(_level.GetVertexSharpness(vert)));
-    if (!(sharpness.line > sharpness.cross) || _level.IsNonManifold(vert)) {
-        return 0;
-    }
-    add(corner, {1, isOut ? LineFlag::kDown : LineFlag::kTop},
-        {1, isOut ? LineFlag::kTop : LineFlag::kDown}, sharpness);
-    return sharpness.line;
 }
 
 // The corner at the other end of an edge from the line: not where its other edge leads to a line that is as sharp, or it is

@@ -54,7 +54,7 @@ auto const &kQuadLineTable = quadLines::kTable;
 constexpr int kNumQuadLineRows = int(std::size(kQuadLineTable));
 
 bool isOfHalf(QuadLineTableRow const &row) {
-    bool const isAlongLine = row.flag == 'a' || (row.flag == 'v' && row.numQuads == 1);
+    bool const isAlongLine = row.flag == 'a';
     return isAlongLine && row.path[0] == '1' && row.path[1 + std::strspn(row.path + 1, "0")] == 0;
 }
 int getSize(QuadLineTableRow const &row) {

@@ -24,7 +24,7 @@ namespace OpenSubdivHex::Regression {
 /// It begins with the masks where no row is.  Judge() looks at three tori, two tubes and half disks, at level 5.
 class QuadLineSearch : public TableSearch {
 public:
-    /// \param numQuads  on a side of the line at the vertex: 1 to 4
+    /// \param numQuads  on a side of the line at the vertex: 2 to 4
     /// \param level     at which surfaces are judged: 4 or more
     QuadLineSearch(int numQuads, int level);
 

@@ -140,7 +140,7 @@ std::vector<Table> makeTables() {
                       [](Effort const &effort) {
                           searchTable(LineMaskSearch(effort.lineLevel), effort.maxLineSteps);
                       }});
-    for (int numQuads = 1; numQuads <= 4; ++numQuads) {
+    for (int numQuads = 2; numQuads <= 4; ++numQuads) {
         tables.push_back(
             {"quads-beside-lines-" + std::to_string(numQuads),
              "far_ext/rules/quadLineRows.inl: beside vertices of lines with so many quads",

@@ -127,12 +127,11 @@ TEST(QuadLineRow, LieInTheFirstRow) {
             EXPECT_EQ(countLineCorners(torus, level, role), 0);
         }
     }
-    // At the border of a grid: five vertices of each side have two quads, but for the corners beside those of the grid,
-    // which have flags beside the one quad there instead; and at the other ends of edges two corners each, but none in the
-    // grid's corner quads.
+    // At the border of a grid: five vertices of each side have two quads; and at the other ends of their edges two corners
+    // each, but none in the grid's corner quads.
     Shape const grid = makeQuads();
-    EXPECT_EQ(countLineCorners(grid, 0, LineRole::At), 4 * (2 * 5 - 2) + 4);
-    EXPECT_EQ(countLineCorners(grid, 0, LineRole::Away), 4 * (2 * 5 - 2) + 4 * 2);
+    EXPECT_EQ(countLineCorners(grid, 0, LineRole::At), 4 * 2 * 5);
+    EXPECT_EQ(countLineCorners(grid, 0, LineRole::Away), 4 * (2 * 5 - 2));
     EXPECT_EQ(countLineCorners(grid, kNumLineSteps, LineRole::At), 0);
 }
 

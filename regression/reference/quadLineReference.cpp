@@ -112,7 +112,7 @@ private:
 
     void beginSide(std::vector<Side> const &side, float line, float cross) {
         std::size_t const count = side.size();
-        if (count > 4 || std::any_of(side.begin(), side.end(), [&](Side corner) {
+        if (count < 2 || count > 4 || std::any_of(side.begin(), side.end(), [&](Side corner) {
                 return _mesh.faces[std::size_t(corner.face)].vertices.size() != 4;
             })) {
             return;
@@ -124,12 +124,8 @@ private:
             };
             Side const corner = side[i];
             Face &face = _mesh.faces[std::size_t(corner.face)];
-            LinePath out = pathAt(2 * i);
-            LinePath in = pathAt(2 * i + 1);
-            out.cross = in.cross =
-                std::max(cross, count == 2 ? beginBesideOne(corner, i == 0, line, cross) : 0);
-            face.linesOut[std::size_t(corner.place)].at = out;
-            face.linesIn[std::size_t(corner.place)].at = in;
+            face.linesOut[std::size_t(corner.place)].at = pathAt(2 * i);
+            face.linesIn[std::size_t(corner.place)].at = pathAt(2 * i + 1);
             bool const hasLine = i == 0 || i + 1 == count;
             if (i > 0) {
                 beginOtherEnd(nextSide(_mesh, corner), false, count, hasLine, line, cross);
@@ -138,26 +134,6 @@ private:
                 beginOtherEnd(previousSide(_mesh, corner), true, count, hasLine, line, cross);
             }
         }
-    }
-
-    /// A corner at the line whose next vertex along the line, which the edge from the corner leads to if \p isOut, has its face
-    /// alone on this side.  Returns how sharp the line goes on there, 0 if it has others.
-    float beginBesideOne(Side corner, bool isOut, float line, float cross) {
-        Side const next = isOut ? nextSide(_mesh, corner) : previousSide(_mesh, corner);
-        int const v = _mesh.GetStart(next);
-        TaggedMesh::Vertex const &vertex = _mesh.vertices[std::size_t(v)];
-        EdgesAround const around = edgesAround(_mesh, v);
-        Edge const &other =
-            _mesh.edges[std::size_t(edgeFrom(isOut ? next : previousSide(_mesh, next)))];
-        line = std::min({line, around.GetSharpness(1), other.sharpness});
-        cross = std::max({cross, around.GetSharpness(2), vertex.sharpness});
-        if (line <= cross || vertex.isNonManifold) {
-            return 0;
-        }
-        LinePath const along{"1v", "", line, cross};
-        LinePath const across{"1t", "", line, cross};
-        set(corner, isOut ? along : across, isOut ? across : along);
-        return line;
     }
 
     /// Of two lines in the same role the one with the larger share.
@@ -240,17 +216,14 @@ std::optional<LineRule> findRule(LinePath const &out, LinePath const &in) {
     bool const isMirrored = isLess(in, out);
     LinePath const &path = isMirrored ? in : out;
     auto found = rows.find(path.flag + ":" + path.steps);
-    bool const isFirst = path.flag[1] == 'v';
-    if (found == rows.end() && (isFirst || path.flag[1] == 't')) {
-        // As of regular lines; beside a vertex with one quad these pass the corner, too.
-        char const ofTwo = path.flag[0] != '1' ? path.flag[1] : isFirst ? 'a' : 'b';
-        found = rows.find(std::string{'2', ofTwo} + ":" + path.steps);
+    if (found == rows.end() && (path.flag[1] == 'v' || path.flag[1] == 't')) {
+        found = rows.find(std::string{'2', path.flag[1]} + ":" + path.steps); // of regular lines
     }
     double const share = double(std::min(out.GetShare(), in.GetShare()));
     if (found == rows.end() || share == 0) {
         return {};
     }
-    bool const isAlong = path.flag[1] == 'a' || path.flag == "1v";
+    bool const isAlong = path.flag[1] == 'a';
     bool const isOfHalf = isAlong && !path.steps.empty() && path.steps[0] != '0' &&
                           path.steps.find_first_not_of('0', 1) == std::string::npos;
     return LineRule{found->second.weights, isMirrored, isOfHalf, found->second.weightOfPoint,
