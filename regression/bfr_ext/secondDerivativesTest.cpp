@@ -210,7 +210,7 @@ TEST(SecondDerivatives, AreTheDifferencesOfFirstOnes) {
                 ++numPlaces;
             }
         }
-        EXPECT_LE(sum / numPlaces, 0.005);
+        EXPECT_LE(sum / numPlaces, 0.006);
     }
 }
 
