@@ -38,12 +38,12 @@ ENUM TakeEnum(py::handle object, char const *argument) {
         }
         names += (names.empty() ? "'" : ", '") + name + "'";
     }
-    std::string const message =
-        std::string(argument) + ": " + std::string(py::repr(object)) + " is none of " + names;
     if (py::isinstance<py::str>(object)) {
-        throw py::value_error(message);
+        throw py::value_error(std::string(argument) + ": " + std::string(py::repr(object)) +
+                              " is none of " + names);
     }
-    throw py::type_error(message);
+    throw py::type_error(std::string(argument) + ": one of " + names + " is needed, not " +
+                         std::string(py::str(py::type::of(object).attr("__name__"))));
 }
 
 } // namespace OpenSubdivHex::Python

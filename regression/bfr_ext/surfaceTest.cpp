@@ -967,6 +967,36 @@ TEST(SurfaceFactoryTest, ThreadsMayShareACacheThatGoesFirst) {
     }
 }
 
+// On a flat grid of squares: how far points lie beside their (u, v), by a coordinate, in sides of a square.
+TEST(SurfaceTest, PlacesOfSquaresAreBentMostBesideBorders) {
+    constexpr int kNumSquares = 6; // to a side
+    constexpr int kNumSteps = 16;
+    Shape const shape = MakeTiling(Tiling::Quads, kNumSquares, kNumSquares);
+    auto const refiner = CreateRefiner(shape, ReferenceMask::Smooth, 0,
+                                       getOptions(Sdc::Options::VTX_BOUNDARY_EDGE_AND_CORNER));
+    SurfaceSet<double> const surfaces(*refiner, shape.positions);
+    double atBorder = 0;
+    double inside = 0;
+    for (int face = 0; face < shape.GetNumFaces(); ++face) {
+        int const square[2] = {face % kNumSquares, face / kNumSquares};
+        bool const isInside = std::all_of(
+            square, square + 2, [](int place) { return place > 0 && place < kNumSquares - 1; });
+        double &largest = isInside ? inside : atBorder;
+        for (int i = 0; i <= kNumSteps; ++i) {
+            for (int k = 0; k <= kNumSteps; ++k) {
+                double const uv[2] = {double(i) / kNumSteps, double(k) / kNumSteps};
+                Vector3 const point = surfaces.EvaluatePosition(face, uv);
+                for (std::size_t j = 0; j < 2; ++j) {
+                    largest = std::max(largest, std::abs(point[j] - square[j] - uv[j]));
+                }
+                ASSERT_NEAR(point[2], 0, 1e-12);
+            }
+        }
+    }
+    EXPECT_NEAR(atBorder, 0.132, 0.002);
+    EXPECT_NEAR(inside, 0.067, 0.002);
+}
+
 TEST(SurfaceTest, ControlPointsBoundTheSurface) {
     Shape const &shape = GetShape("cube");
     auto const refiner = CreateRefiner(shape, ReferenceMask::Average, 0);

@@ -213,6 +213,38 @@ void expectSameBits(std::vector<float> const &actual, std::vector<float> const &
     EXPECT_EQ(std::memcmp(actual.data(), expected.data(), actual.size() * sizeof(float)), 0);
 }
 
+/// Makes the two faces at a vertex of the line one.
+void joinFacesAt(Patch &patch, int lineVertex) {
+    int const vertex = patch.line[std::size_t(lineVertex)];
+    std::vector<int> sizes;
+    std::vector<int> vertices;
+    std::vector<int> joined[2]; // each from the vertex on
+    auto first = patch.shape.faceVertices.begin();
+    for (int const size : patch.shape.faceSizes) {
+        std::vector<int> face(first, first + size);
+        first += size;
+        auto const found = std::find(face.begin(), face.end(), vertex);
+        if (found == face.end()) {
+            sizes.push_back(size);
+            vertices.insert(vertices.end(), face.begin(), face.end());
+        } else {
+            std::rotate(face.begin(), found, face.end());
+            ASSERT_TRUE(joined[1].empty());
+            joined[joined[0].empty() ? 0 : 1] = face;
+        }
+    }
+    if (joined[0][1] != joined[1].back()) {
+        std::swap(joined[0], joined[1]);
+    }
+    ASSERT_EQ(joined[0][1], joined[1].back());
+    joined[1].pop_back(); // the other end of the edge between the two
+    sizes.push_back(int(joined[0].size() + joined[1].size()) - 1);
+    vertices.insert(vertices.end(), joined[1].begin(), joined[1].end());
+    vertices.insert(vertices.end(), joined[0].begin() + 1, joined[0].end());
+    patch.shape.faceSizes = sizes;
+    patch.shape.faceVertices = vertices;
+}
+
 /// Compares patches of quads and of triangles, with two and three faces at the vertices of the line.
 void expectSameLine(FarExt::HexSchemeOptions scheme, std::size_t leastNumSegments) {
     Patch const patch = makePatch(Tiling::Quads, 3, 0, false);
@@ -254,6 +286,42 @@ TEST(Border, TruncatedPatchesHaveTheSameBitsOnTheLineTheyShare) {
         SCOPED_TRACE(testing::Message() << "mask " << int(mask));
         scheme.faceMask = mask;
         expectSameLine(scheme, 19U * kLineEdges);
+    }
+}
+
+// A vertex with one face in one of the patches stays there alone.  At level 1 the line has it between the points that the
+// other line has, too; behind that its points are others.
+TEST(Border, TruncatedPatchesHaveOtherLinesWhereAVertexStaysInOne) {
+    constexpr int kJoined = 3;
+    FarExt::HexSchemeOptions scheme;
+    scheme.firstStep = FarExt::FirstStep::Truncate;
+    for (FarExt::FaceMask mask : {FarExt::FaceMask::Average, FarExt::FaceMask::Smooth}) {
+        SCOPED_TRACE(testing::Message() << "mask " << int(mask));
+        scheme.faceMask = mask;
+        Patch const patch = makePatch(Tiling::Quads, 3, 0, false);
+        Patch other = makePatch(Tiling::Quads, 3, 0, false);
+        ASSERT_NO_FATAL_FAILURE(joinFacesAt(other, kJoined));
+        auto const refiner = refine(patch, scheme);
+        auto const otherRefiner = refine(other, scheme);
+        ASSERT_LT(refiner->GetLevel(0).GetVertexChildVertex(patch.line[kJoined]), 0);
+        int const stays = otherRefiner->GetLevel(0).GetVertexChildVertex(other.line[kJoined]);
+        ASSERT_GE(stays, 0);
+        std::vector<int> const otherWalk = walkLine(*otherRefiner, 1, other);
+        auto const found = std::find(otherWalk.begin(), otherWalk.end(), stays);
+        ASSERT_NE(found, otherWalk.end());
+        std::size_t const place = std::size_t(found - otherWalk.begin());
+        std::size_t const numPoints = walkLine(*refiner, 1, patch).size();
+        ASSERT_EQ(otherWalk.size(), numPoints + 1);
+        for (auto const &find : {&refinePrimvar, &evaluate}) {
+            std::vector<float> const expected = find(patch, *refiner, false);
+            std::vector<float> actual = find(other, *otherRefiner, false);
+            auto const kept = actual.begin() + std::ptrdiff_t(kLength * place);
+            actual.erase(kept, kept + kLength);
+            EXPECT_TRUE(std::equal(actual.begin(),
+                                   actual.begin() + std::ptrdiff_t(kLength * numPoints),
+                                   expected.begin()));
+            EXPECT_NE(actual.size(), expected.size());
+        }
     }
 }
 

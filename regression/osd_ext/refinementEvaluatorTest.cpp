@@ -39,6 +39,8 @@ constexpr Sdc::Options::FVarLinearInterpolation kLinearInterpolations[] = {
 /// A few roundings per level, for values up to 1 in size.
 constexpr double kTolerance = 1e-6;
 constexpr float kGuard = -12345.678f;
+constexpr FarExt::HexSchemeOptions kTruncateFirst{FaceMask::Smooth, FarExt::SchemeType::Hexagonal,
+                                                  FarExt::FirstStep::Truncate};
 
 /// Without the relations of the last level, which nobody may read.
 std::unique_ptr<TopologyRefiner> createRefiner(Shape const &shape,
@@ -579,15 +581,20 @@ TEST(RefinementEvaluator, HasTheSameBitsForAnyNumberOfThreads) {
         Shape const &shape;
         int level;
         FarExt::StencilMode mode;
+        FarExt::HexSchemeOptions schemeOptions;
     };
-    Case const cases[] = {{GetShape("cube"), 8, FarExt::INTERPOLATE_VERTEX},
-                          {GetShape("cube"), 7, FarExt::INTERPOLATE_VARYING},
-                          {GetShape("mixedPatch"), 7, FarExt::INTERPOLATE_VERTEX},
-                          {GetFeatureShape("creasedBall"), 6, FarExt::INTERPOLATE_VERTEX},
-                          {GetFeatureShape("cubeOfCharts"), 7, FarExt::INTERPOLATE_FACE_VARYING}};
+    FarExt::HexSchemeOptions const plain;
+    Case const cases[] = {
+        {GetShape("cube"), 8, FarExt::INTERPOLATE_VERTEX, plain},
+        {GetShape("cube"), 7, FarExt::INTERPOLATE_VARYING, plain},
+        {GetShape("mixedPatch"), 7, FarExt::INTERPOLATE_VERTEX, plain},
+        {GetFeatureShape("creasedBall"), 6, FarExt::INTERPOLATE_VERTEX, plain},
+        {GetFeatureShape("creasedBall"), 6, FarExt::INTERPOLATE_VERTEX, kTruncateFirst},
+        {GetFeatureShape("cubeOfCharts"), 7, FarExt::INTERPOLATE_FACE_VARYING, plain},
+        {GetFeatureShape("cubeOfCharts"), 6, FarExt::INTERPOLATE_FACE_VARYING, kTruncateFirst}};
     for (Case const &testCase : cases) {
         SCOPED_TRACE(testCase.shape.name);
-        auto const refiner = createRefiner(testCase.shape, FaceMask::Average, testCase.level);
+        auto const refiner = createRefiner(testCase.shape, testCase.schemeOptions, testCase.level);
         auto const evaluator = createEvaluator(*refiner, testCase.mode);
         for (int const length : {3, 5}) {
             std::vector<float> expected;
@@ -605,11 +612,30 @@ TEST(RefinementEvaluator, HasTheSameBitsForAnyNumberOfThreads) {
 }
 
 TEST(RefinementEvaluator, HasTheSameBitsAtEverySimdLevel) {
-    constexpr int kLevel = 4;
     constexpr int kMaxLength = 9;
-    for (TorusFaces faces :
-         {TorusFaces::Quads, TorusFaces::Triangles, TorusFaces::IrregularTriangles}) {
-        auto const refiner = createRefiner(MakeTorus(7, 5, faces), FaceMask::Smooth, kLevel);
+    struct Case {
+        Shape shape;
+        int level;
+        FarExt::FirstStep firstStep;
+    };
+    Case const cases[] = {
+        {MakeTorus(7, 5, TorusFaces::Quads), 4, FarExt::FirstStep::Same},
+        {MakeTorus(7, 5, TorusFaces::Triangles), 4, FarExt::FirstStep::Same},
+        {MakeTorus(7, 5, TorusFaces::IrregularTriangles), 4, FarExt::FirstStep::Same},
+        {MakeTorus(7, 5, TorusFaces::Triangles), 3, FarExt::FirstStep::Truncate},
+        {MakeTiling(Tiling::Triangles, 6, 4), 4, FarExt::FirstStep::Truncate},
+        {MakeTiling(Tiling::Quads, 6, 4), 4, FarExt::FirstStep::Same},
+        {GetFeatureShape("creasedBall"), 3, FarExt::FirstStep::Truncate}};
+    Sdc::Options sharpBorders;
+    sharpBorders.SetVtxBoundaryInterpolation(Sdc::Options::VTX_BOUNDARY_EDGE_ONLY);
+    for (Case const &testCase : cases) {
+        SCOPED_TRACE(testing::Message()
+                     << testCase.shape.name << ", first step " << int(testCase.firstStep));
+        FarExt::HexSchemeOptions schemeOptions;
+        schemeOptions.faceMask = FaceMask::Smooth;
+        schemeOptions.firstStep = testCase.firstStep;
+        auto const refiner =
+            createRefiner(testCase.shape, schemeOptions, testCase.level, sharpBorders);
         auto const evaluator = createEvaluator(*refiner, FarExt::INTERPOLATE_VERTEX);
         for (int length = 1; length <= kMaxLength; ++length) {
             std::vector<float> const src = makeControlValues(evaluator->GetNumElements(0), length);
