@@ -185,4 +185,20 @@ TEST(QuadLineRow, CreasesEqualReference) {
     expectSameAsReference(shape);
 }
 
+// Two quads beside a crease that meet its other side at a free border alone are no side of two quads.
+TEST(QuadLineRow, SidesEndAtFreeBorders) {
+    Shape shape;
+    shape.name = "a triangle between two quads";
+    shape.closed = false;
+    shape.positions = {1,   2, 0.3,  2,   2.2, -0.1, -1,  2,  0.2, 0,   0,
+                       0.5, 2, -0.2, 0.1, -2,  1.8,  0.4, -2, 0,   -0.3};
+    shape.faceSizes = {3, 4, 4};
+    shape.faceVertices = {0, 2, 3, 3, 4, 1, 0, 2, 5, 6, 3};
+    shape.creaseVertexPairs = {0, 3, 2, 3};
+    for (float const sharpness : {Crease::SHARPNESS_INFINITE, 2.25f}) {
+        shape.creaseSharpness = {Crease::SHARPNESS_INFINITE, sharpness};
+        expectSameAsReference(shape, edgeOptions(Sdc::Options::VTX_BOUNDARY_NONE));
+    }
+}
+
 } // namespace OpenSubdivHex::Regression::quadLineRowTest

@@ -93,8 +93,10 @@ private:
                     continue;
                 }
                 std::vector<Side> side;
-                for (std::size_t i = 0; i < size; ++i) {
-                    side.push_back(fan.corners[(start + i) % size]);
+                // An open fan ends at the boundary.
+                std::size_t const end = fan.isClosed ? start + size : size;
+                for (std::size_t i = start; i < end; ++i) {
+                    side.push_back(fan.corners[i % size]);
                     if (isEnd(edgeFrom(previousSide(_mesh, side.back())))) {
                         break;
                     }
