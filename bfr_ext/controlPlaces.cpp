@@ -3,10 +3,11 @@
 // Places on the control mesh, as places of surfaces.
 #include "surfaceFactory.h"
 
-#include "far_ext/status.h"
+#include "far_ext/vtr/report.h"
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -126,12 +127,12 @@ bool SurfaceFactory::FindSurfacePlace(Index controlFace, REAL const controlUv[2]
                             "places on the control mesh are not found behind FirstStep::TriHex");
     } else if (hasRefinedAgain()) {
         result = checkIsFace(0);
+    } else if (!std::isfinite(controlUv[0]) || !std::isfinite(controlUv[1])) {
+        result = CallStatus(StatusCode::InvalidArgument, ComponentType::Face, controlFace,
+                            "u and v are not finite, in face " + std::to_string(controlFace) +
+                                " of level 0");
     }
-    bool const isOk = result.IsOk();
-    if (status) {
-        *status = std::move(result);
-    }
-    if (!isOk) {
+    if (!FarExt::internal::Report(result, status)) {
         return false;
     }
     if (_level.GetDepth() == 0) {

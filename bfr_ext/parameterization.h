@@ -38,7 +38,7 @@ public:
     /// other faces are regular polygons with sides 1 long.  Take (u, v) there to weigh those of several points, as
     /// for a ray's hit in a facet: points of different sub-faces have no mean in (u, v).
     ///
-    /// For valid parameterizations and finite numbers.  REAL is float or double.
+    /// For valid parameterizations.  Coordinates are not numbers where one that is given is none.  REAL is float or double.
     /// @{
 
     /// Where \p uv lies in the plane.  (u, v) outside its sub-face is moved to the boundary of this.

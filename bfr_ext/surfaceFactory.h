@@ -204,8 +204,9 @@ public:
     /// \param controlUv    u and v in it, as in Bfr::Parameterization; inside the face
     /// \param face         gets the base face, which may be a hole
     /// \param uv           gets u and v in it
-    /// \return             false, with nothing written: InvalidArgument for a face out of range, or for a refiner that refined
-    ///                     again behind a first step; Unsupported behind FarExt::FirstStep::TriHex
+    /// \return             false, with nothing written: InvalidArgument for a face out of range, for u or v that is not finite,
+    ///                     or for a refiner that refined again behind a first step; Unsupported behind
+    ///                     FarExt::FirstStep::TriHex
     template <typename REAL>
     bool FindSurfacePlace(Index controlFace, REAL const controlUv[2], Index *face, REAL uv[2],
                           FarExt::CallStatus *status = nullptr) const;

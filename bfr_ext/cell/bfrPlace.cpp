@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bfrPlace.h"
 
-#include <cmath>
-
 namespace OpenSubdivHex::BfrExt::internal {
 
 using FarExt::internal::FindInPlane;
@@ -17,10 +15,7 @@ BfrPlace makePlace(BasePoint const &point, PlanePlace const &place) {
 
 BfrPlace FindInSubFaces(Bfr::Parameterization const &parameterization, FaceShape shape,
                         Pair const &uv, double tolerance) {
-    // A place that is not a number lies in no sub-face.
-    bool const isNone = std::isnan(uv[0]) || std::isnan(uv[1]);
-    PlanePlace const place =
-        isNone ? PlanePlace{{NAN, NAN}, {1, 0}, {0, 1}, {0, 0}} : FindInPlane(parameterization, uv);
+    PlanePlace const place = FindInPlane(parameterization, uv);
     return makePlace(FindBasePoint(shape, place.coords[0], place.coords[1], tolerance), place);
 }
 

@@ -42,6 +42,9 @@ PlanePlace FindInPlane(Bfr::Parameterization const &parameterization, Pair const
     if (!parameterization.HasSubFaces()) {
         return {uv, {1, 0}, {0, 1}, {0, 0}};
     }
+    if (std::isnan(uv[0]) || std::isnan(uv[1])) { // in no sub-face
+        return {{NAN, NAN}, {1, 0}, {0, 1}, {0, 0}};
+    }
     int const size = parameterization.GetFaceSize();
     // Bfr converts coordinates to integers, and has tiles from 0 on, up to the size of the face.
     double const farthest = size;

@@ -27,7 +27,8 @@ struct PlanePlace {
     Pair byUv; ///< by both; there are no others
 };
 
-/// \brief Where (u, v), which are finite, lie in the plane of the face of a valid parameterization.
+/// \brief Where (u, v) lies in the plane of the face of a valid parameterization; coordinates are not numbers where u or v
+/// is none.
 ///
 /// A sub-face is mapped bilinearly to the kite of its corner, the centre of the face, and the middles of the two
 /// edges at the corner.  (u, v) outside of the sub-face that Bfr finds is moved to its boundary.

@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <memory>
 #include <vector>
@@ -270,6 +271,15 @@ TEST(ControlPlaces, AreRefusedByName) {
         EXPECT_FALSE(sheet.factory->FindSurfacePlace(none, uv, &face, found, &status));
         EXPECT_EQ(status.GetCode(), FarExt::StatusCode::InvalidArgument);
         EXPECT_EQ(status.GetComponentIndex(), none);
+    }
+    constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+    constexpr double kInfinite = std::numeric_limits<double>::infinity();
+    for (double const none : {kNan, kInfinite, -kInfinite}) {
+        for (std::array<double, 2> const &nowhere : {std::array{none, 0.5}, {0.5, none}}) {
+            EXPECT_FALSE(sheet.factory->FindSurfacePlace(2, nowhere.data(), &face, found, &status));
+            EXPECT_EQ(status.GetErrorMessage(), "u and v are not finite, in face 2 of level 0");
+            EXPECT_EQ(status.GetComponentIndex(), 2);
+        }
     }
     sheet.refiner->RefineUniform(1);
     EXPECT_FALSE(sheet.factory->FindSurfacePlace(0, uv, &face, found, &status));

@@ -295,6 +295,11 @@ TEST(Parameterization, TakesPlacesOutsideToTheFaceAndNoneForNone) {
         for (FacePlace const &uv : {FacePlace{kNan, 0.2}, {0.2, kNan}}) {
             auto const place = BfrExt::internal::FindBfrPlace(parameterization, size, uv, 0);
             EXPECT_TRUE(std::isnan(place.point.coords[0] + place.point.coords[1])) << size;
+            FacePlace converted;
+            parameterization.ConvertToPlane(uv.data(), converted.data());
+            EXPECT_TRUE(std::isnan(converted[0] + converted[1])) << size;
+            parameterization.ConvertFromPlane(uv.data(), converted.data());
+            EXPECT_TRUE(std::isnan(converted[0] + converted[1])) << size;
         }
     }
 }
