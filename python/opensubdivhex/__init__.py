@@ -43,20 +43,29 @@ except ImportError as error:
     raise
 
 
+def _reduce(self, protocol):
+    """As object's, by protocol 2 at least: pybind11 ends the process in older ones."""
+    return object.__reduce_ex__(self, max(protocol, 2))
+
+
 for _value in map(globals().get, __all__):
     if isinstance(_value, type):
         _value.__module__ = __name__
+        if not issubclass(_value, BaseException):
+            _value.__reduce_ex__ = _reduce
 del _value
 
 
 def _show(cls, *names):
     """Has the objects of a class represented by some of their properties."""
     def represent(self):
+        if not _opensubdivhex._is_initialized(self):
+            return f"<{type(self).__name__}, not initialized>"  # whose properties must not be read
         try:
             values = [f"{name}={getattr(self, name)!r}" for name in names]
         except RuntimeError as error:  # a level that is out of date
             values = [str(error)]
-        return f"<{' '.join([cls.__name__, ', '.join(values)]).strip()}>"
+        return f"<{' '.join([type(self).__name__, ', '.join(values)]).strip()}>"
     cls.__repr__ = represent
 
 

@@ -59,6 +59,9 @@ def _find_error(name, signature, args, kwargs):
             for number in values[key] if kind == "List" else [values[key]]:
                 if not -2**31 <= operator.index(number) < 2**31:
                     return len(names), ValueError(f"{key}: {number} is a number that 32 bits do not hold")
+    for key, kind, _, _ in parameters:  # what is left is a number without a sign
+        if kind == "int" and values.get(key) is not None and operator.index(values[key]) < 0:
+            return len(names), ValueError(f"{key}: {values[key]} is below 0")
     return None
 
 

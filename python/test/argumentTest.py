@@ -337,8 +337,21 @@ def test_simple_arguments(refiner):
         refiner.refine_uniform(2**32)
     with pytest.raises(ValueError, match="^fvar_channels: -4294967296 is a number that 32 bits"):
         osh.create_triangle_indices(refiner.get_level(1), fvar_channels=[0, -2**32])
+    with pytest.raises(ValueError, match="^max_memory: -1 is below 0$"):
+        osh.ViewBounds(surfaces, -1)
+    with pytest.raises(ValueError, match="^max_memory: -2 is below 0$"):
+        osh.PatchStream(surfaces, 1, max_memory=-2)
     with pytest.raises(TypeError, match="No constructor"):
         osh.Surface(refiner)
+
+
+def test_objects_whose_constructor_raised_an_error_are_shown():
+    classes = [value for value in vars(osh).values() if isinstance(value, type)
+               and not hasattr(value, "__members__") and not issubclass(value, Exception)]
+    assert len(classes) > 15
+    for value in classes:
+        if value not in (osh.CpuEvaluator, osh.ParallelEvaluator):  # which have no objects
+            assert repr(value.__new__(value)) == f"<{value.__name__}, not initialized>"
 
 
 @pytest.mark.parametrize("rest, error, message", [

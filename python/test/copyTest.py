@@ -12,7 +12,7 @@ from meshes import CUBE_FACES, CUBE_POSITIONS, PYRAMID_FACES, PYRAMID_POSITIONS,
 
 COPIES = [copy.copy, copy.deepcopy] + [
     lambda value, protocol=protocol: pickle.loads(pickle.dumps(value, protocol))
-    for protocol in range(2, pickle.HIGHEST_PROTOCOL + 1)]
+    for protocol in range(pickle.HIGHEST_PROTOCOL + 1)]
 
 
 def describe(refiner):
@@ -144,6 +144,15 @@ def test_tessellations(make_copy):
     forest = osh.View(osh.Camera((0, 0, 5))).make_forest(factory, CUBE_POSITIONS)
     with pytest.raises(TypeError, match="of a CellForest, or of a section"):
         make_copy(forest.tessellation(0))
+
+
+def test_other_objects_are_refused():
+    refiner = make_tagged()
+    factory = osh.SurfaceFactory(refiner)
+    for value in (refiner.get_level(0), osh.StencilTable(refiner), factory, factory.vertex_surface(0)):
+        for protocol in range(pickle.HIGHEST_PROTOCOL + 1):
+            with pytest.raises(TypeError, match=f"cannot pickle.*{type(value).__name__}"):
+                pickle.dumps(value, protocol)
 
 
 def test_errors():
