@@ -163,9 +163,11 @@ public:
         };
         if (meshPointDesc.size == 3) { // by far the most
             gather([](REAL_MESH const *from, REAL *to) {
-                to[0] = REAL(from[0]);
-                to[1] = REAL(from[1]);
-                to[2] = REAL(from[2]);
+                // All before the first is written, which might be one of them: so they are copied at once.
+                REAL_MESH const numbers[3] = {from[0], from[1], from[2]};
+                to[0] = REAL(numbers[0]);
+                to[1] = REAL(numbers[1]);
+                to[2] = REAL(numbers[2]);
             });
         } else {
             gather([&](REAL_MESH const *from, REAL *to) {

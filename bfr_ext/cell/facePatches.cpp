@@ -250,8 +250,9 @@ private:
                 face.FindChildPoints(i, _indices.data());
                 grow(_ofChild, columns.size());
                 for (std::size_t column = 0; column < columns.size(); ++column) {
-                    std::copy_n(_rings.GetPoints() + std::size_t(_indices[column]) * _paddedSize,
-                                _paddedSize, &_ofChild[std::size_t(columns[column]) * _paddedSize]);
+                    StepMatrix::CopyPadded(
+                        _rings.GetPoints() + std::size_t(_indices[column]) * _paddedSize,
+                        _paddedSize, &_ofChild[std::size_t(columns[column]) * _paddedSize]);
                 }
                 return refine(child.GetType());
             });

@@ -134,12 +134,13 @@ FaceWalk::Crowd const *FaceWalk::FindCrowd(Index face) const {
 // A loop of several threads might take up work of its callers, which wait for this.
 void FaceWalk::makeArrays() const {
     constexpr int kMinFaces = 3;
-    std::vector<Index> places(_level.faceVerts.size()); // by corner
+    Arrays arrays;
+    Buffer<Index> &places = arrays.places;
+    places.Resize(_level.faceVerts.size());
     for (std::size_t place = 0; place < places.size(); ++place) {
         places[std::size_t(_level.GetVertexCorner(Index(place)))] = Index(place);
     }
-    Arrays arrays;
-    arrays.nexts.resize(places.size());
+    arrays.nexts.Resize(places.size());
     for (Index face = 0; face < _level.numFaces; ++face) {
         Index const end = _level.faceFirstCorner[face + 1];
         Index before = end - 1;
@@ -148,11 +149,12 @@ void FaceWalk::makeArrays() const {
                                                                       places[std::size_t(corner)]};
         }
     }
-    arrays.fans.resize(std::size_t(_level.numVertices));
+    arrays.fans.Resize(std::size_t(_level.numVertices));
     for (Index vert = 0; vert < _level.numVertices; ++vert) {
         int const numFaces = _level.GetNumVertexFaces(vert);
         bool const isPlain = kMinFaces <= numFaces && numFaces <= kMaxFaces && !IsAtFeature(vert);
-        arrays.fans[std::size_t(vert)] = {_level.vertFirstFace[vert], isPlain ? numFaces : 0};
+        Index const first = _level.vertFirstFace[vert];
+        arrays.fans[std::size_t(vert)] = {first, isPlain ? first + numFaces : first};
     }
     _arrays = std::move(arrays);
 }

@@ -24,13 +24,17 @@ public:
     };
     /// The faces of a vertex.
     struct Fan {
+        int GetNumFaces() const { return end - first; }
+
         Index first; ///< place
-        int numFaces; ///< 0 where plain faces have no such vertex: at features, and of too few or too many faces
+        Index
+            end; ///< place; first where plain faces have no such vertex: at features, and of too few or too many faces
     };
     /// The arrays that the gatherer goes through.
     struct Arrays {
-        std::vector<Next> nexts; ///< by place
-        std::vector<Fan> fans;   ///< by vertex
+        FarExt::internal::Buffer<Index> places; ///< by corner
+        FarExt::internal::Buffer<Next> nexts;   ///< by place
+        FarExt::internal::Buffer<Fan> fans;     ///< by vertex
     };
     /// Faces of a vertex up to which it is in one of Arrays::fans.
     static constexpr int kMaxFaces = 255;

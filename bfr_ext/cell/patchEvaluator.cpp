@@ -252,8 +252,8 @@ void PatchEvaluator<REAL>::evaluate(PlainFaceType const &type, RingValues<REAL> 
         }
         std::vector<REAL> &points = getPoints(cell.IsInner() ? 3 : 2, columns.size());
         for (std::size_t i = 0; i < columns.size(); ++i) {
-            std::copy_n(values.GetPoints() + std::size_t(_indices[i]) * _paddedSize, _paddedSize,
-                        &points[std::size_t(columns[i]) * _paddedSize]);
+            StepMatrix::CopyPadded(values.GetPoints() + std::size_t(_indices[i]) * _paddedSize,
+                                   _paddedSize, &points[std::size_t(columns[i]) * _paddedSize]);
         }
         if (cell.IsInner()) {
             descendToChildren(cell.GetType(), plan, next, 1);

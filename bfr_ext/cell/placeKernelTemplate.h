@@ -170,8 +170,8 @@ public:
     /// The numbers of the places of a block, component by component.
     using Numbers = REAL[3][PlaceMatrix<REAL>::kMaxWidth];
 
-    /// The numbers place by place, with three components.
-    using Points = REAL[PlaceMatrix<REAL>::kMaxWidth][3];
+    /// The numbers place by place, with three components, of as many places as registers hold.
+    using Points = REAL (*)[3];
 
     /// \param begin   the first place of the block
     /// \param count   places of the block that are wanted, the first ones
@@ -317,7 +317,7 @@ private:
             Store(sums[k], numbers[k] + first);
         }
     }
-    static void storeSums(Lanes const (&sums)[3], std::size_t first, Points &places) {
+    static void storeSums(Lanes const (&sums)[3], std::size_t first, Points const &places) {
         StorePoints(sums[0], sums[1], sums[2], places[first]);
     }
 };
@@ -441,20 +441,28 @@ private:
             Tiles::template Form<NUM_COMPONENTS, HAS_INDICES>(_matrix, block.begin, block.count,
                                                               _sums.points + component,
                                                               _sums.stride, _sums.indices, result);
-            writePlaces<NUM_COMPONENTS>(block, result, _sums.results + component,
-                                        _sums.resultStride);
         };
+        REAL *const results = _sums.results + component;
         if constexpr (NUM_COMPONENTS == 3) {
-            form(_places);
+            bool const fillsRegisters = block.count == _matrix.GetWidth(block.begin);
+            if (fillsRegisters && !block.firstRun && _sums.resultStride == 3) {
+                auto *places = reinterpret_cast<typename Tiles::Points>(results) + block.begin;
+                form(places);
+                return;
+            }
+            typename Tiles::Points places = _places;
+            form(places);
+            writePlaces<NUM_COMPONENTS>(block, places, results, _sums.resultStride);
         } else {
             form(_numbers);
+            writePlaces<NUM_COMPONENTS>(block, _numbers, results, _sums.resultStride);
         }
     }
 
     PlaceMatrix<REAL> const &_matrix;
     PlaceSums<REAL> const &_sums;
     typename Tiles::Numbers _numbers;
-    typename Tiles::Points _places;
+    REAL _places[PlaceMatrix<REAL>::kMaxWidth][3];
 };
 
 template <std::size_t BYTES, typename REAL>

@@ -247,31 +247,24 @@ PlainFaceType const &PlainFaceTypes::Add(PlainFaceKey const &key, int numVerts,
 // The vertices of the face and then, around one after the other, their neighbours: where the face across
 // an edge is a triangle, the ends of the edge have a neighbour in common.
 bool PlainFaceGatherer::findVertices(Level const &level, Index face) {
-    FaceWalk::Next const *const nexts = _nexts;
-    FaceWalk::Fan const *const fans = _fans;
+    FaceWalk::Next const *const nexts = _arrays->nexts.data();
+    FaceWalk::Fan const *const fans = _arrays->fans.data();
     int const size = level.GetFaceSize(face);
     Vertex *end = _verts;
-    // The faces of a vertex begin with the one at a place, or so many behind it.
-    auto const addVertex = [&](FaceWalk::Next const &next, int turn) {
-        FaceWalk::Fan const fan = fans[next.vert];
-        if (fan.numFaces == 0 || end == _verts + PlainFaceKey::kMaxVerts) {
+    // The faces of a vertex begin with the one at a place.
+    auto const addVertex = [&](Index vert, Index place) {
+        FaceWalk::Fan const fan = fans[vert];
+        if (fan.first == fan.end || end == _verts + PlainFaceKey::kMaxVerts) {
             return false;
         }
-        int const begin = next.place - fan.first + turn;
-        *end++ = {next.vert, fan.first, begin < fan.numFaces ? begin : 0, fan.numFaces};
+        *end++ = {vert, place < fan.end ? place : fan.first, fan};
         return true;
     };
-    FaceWalk::Next center = {level.faceVerts[level.faceFirstCorner[face]], 0};
-    center.place = level.vertFirstFace[center.vert];
-    // A face that has the vertex twice is found to be none that is plain.
-    while (level.vertFaces[center.place] != face || level.vertFaceLocals[center.place] != 0) {
-        ++center.place;
-    }
-    for (int i = 0; i < size; ++i) {
-        if (!addVertex(center, 0)) {
+    Index const first = level.faceFirstCorner[face];
+    for (Index corner = first; corner < first + size; ++corner) {
+        if (!addVertex(level.faceVerts[corner], _arrays->places[std::size_t(corner)])) {
             return false;
         }
-        center = nexts[center.place];
     }
     bool const mayBeTriangles = level.faceSizes.front() == kTriangle;
     auto const isTriangle = [&](Index place) {
@@ -281,9 +274,11 @@ bool PlainFaceGatherer::findVertices(Level const &level, Index face) {
         Vertex const at = _verts[i];
         // The first two are neighbours in the face.
         bool const isFirstCommon = i > 0 && isTriangle(at.GetPlace(1));
-        bool const isLastCommon = i + 1 == size && isTriangle(at.GetPlace(at.numFaces - 1));
-        for (int k = isFirstCommon ? 3 : 2; k < at.numFaces - (isLastCommon ? 1 : 0); ++k) {
-            if (!addVertex(nexts[at.GetPlace(k)], 1)) {
+        int const numFaces = at.fan.GetNumFaces();
+        bool const isLastCommon = i + 1 == size && isTriangle(at.GetPlace(numFaces - 1));
+        for (int k = isFirstCommon ? 3 : 2; k < numFaces - (isLastCommon ? 1 : 0); ++k) {
+            FaceWalk::Next const &next = nexts[at.GetPlace(k)];
+            if (!addVertex(next.vert, next.place + 1)) {
                 return false;
             }
         }
@@ -292,7 +287,7 @@ bool PlainFaceGatherer::findVertices(Level const &level, Index face) {
     _numVerts = int(end - _verts);
     _key.Clear();
     _key.Add(size);
-    std::for_each(_verts, end, [&](Vertex const &vert) { _key.Add(vert.numFaces); });
+    std::for_each(_verts, end, [&](Vertex const &vert) { _key.Add(vert.fan.GetNumFaces()); });
     return true;
 }
 
@@ -302,10 +297,11 @@ bool PlainFaceGatherer::addSizes(Level const &level) {
     bool hasSizes = false;
     for (int i = 0; i < _numVerts; ++i) {
         Vertex const &vert = _verts[i];
-        if (_key.IsFull(vert.numFaces)) {
+        int const numFaces = vert.fan.GetNumFaces();
+        if (_key.IsFull(numFaces)) {
             return false;
         }
-        for (int k = 0; k < vert.numFaces; ++k) {
+        for (int k = 0; k < numFaces; ++k) {
             int const faceSize = getFaceSize(level, vert.GetPlace(k));
             if (faceSize >= kHasSizes) {
                 return false;
@@ -322,44 +318,42 @@ bool PlainFaceGatherer::addSizes(Level const &level) {
     return true;
 }
 
-bool PlainFaceGatherer::areDistinct(Index const *points, int numPoints) {
+// Writes the points of a patch whose vertices differ as the key says; false where points are the same.
+bool PlainFaceGatherer::writePoints(PlainFaceType const &type, Index *points) {
     if (++_search == 0) {
         std::fill_n(_stamps, kNumStamps, std::uint16_t(0));
         ++_search;
     }
+    FaceWalk::Next const *const nexts = _arrays->nexts.data();
     std::uint16_t const search = _search;
-    int numSame = 0;
-    for (int i = 0; i < numPoints; ++i) {
-        std::uint16_t &stamp = _stamps[std::size_t(points[i]) % kNumStamps];
-        numSame += stamp == search ? 1 : 0;
+    bool mayBeSame = false;
+    Index *end = points;
+    auto const add = [&](Index point) {
+        std::uint16_t &stamp = _stamps[std::uint32_t(point) % kNumStamps];
+        mayBeSame = mayBeSame | (stamp == search);
         stamp = search;
-    }
-    if (numSame == 0) {
+        *end++ = point;
+    };
+    std::for_each_n(_verts, _numVerts, [&](Vertex const &vert) { add(vert.vert); });
+    std::for_each(type.GetRuns(), type.GetEndOfRuns(), [&](PlainFaceType::Run const &run) {
+        Index place = _verts[run.first.vert].GetPlace(run.first.place);
+        for (int corner = 1; corner < run.first.corner; ++corner) {
+            place = nexts[place].place;
+        }
+        for (int i = 0; i < run.numPoints; ++i) {
+            FaceWalk::Next const next = nexts[place];
+            place = next.place;
+            add(next.vert);
+        }
+    });
+    if (!mayBeSame) {
         return true;
     }
     // Others may end with the same digits.
     Index sorted[GrowingPatch::kMaxVerts];
-    std::copy_n(points, numPoints, sorted);
-    std::sort(sorted, sorted + numPoints);
-    return std::adjacent_find(sorted, sorted + numPoints) == sorted + numPoints;
-}
-
-// Writes the points of a patch whose vertices differ as the key says.
-void PlainFaceGatherer::writePoints(PlainFaceType const &type, Index *points) const {
-    for (int i = 0; i < _numVerts; ++i) {
-        *points++ = _verts[i].vert;
-    }
-    for (PlainFaceType::Run const *run = type.GetRuns(); run != type.GetEndOfRuns(); ++run) {
-        FaceWalk::Next const *next = &_nexts[_verts[run->first.vert].GetPlace(run->first.place)];
-        for (int corner = 1; corner < run->first.corner; ++corner) {
-            next = &_nexts[next->place];
-        }
-        *points++ = next->vert;
-        for (int i = 1; i < run->numPoints; ++i) {
-            next = &_nexts[next->place];
-            *points++ = next->vert;
-        }
-    }
+    Index *const endOfSorted = std::copy(points, end, sorted);
+    std::sort(sorted, endOfSorted);
+    return std::adjacent_find(sorted, endOfSorted) == endOfSorted;
 }
 
 void PlainFaceGatherer::writeTurns(Level const &level, Index face, Index *turns) const {
@@ -368,15 +362,14 @@ void PlainFaceGatherer::writeTurns(Level const &level, Index face, Index *turns)
         bool const isFirst =
             level.edgeFaces[edges[i]][0] == face && level.edgeFaceLocals[edges[i]][0] == i;
         turns[i] = isFirst ? 0 : 1;
-        turns[_faceSize + i] = _verts[i].begin;
+        turns[_faceSize + i] = _verts[i].begin - _verts[i].fan.first;
     }
 }
 
 PlainFaceType const *PlainFaceGatherer::findType(PlainFaceTypes &types, FaceWalk const &walk,
                                                  Index face) {
     Level const &level = walk.GetLevel();
-    _nexts = walk.GetArrays().nexts.data();
-    _fans = walk.GetArrays().fans.data();
+    _arrays = &walk.GetArrays();
     if (!findVertices(level, face) || (level.faceSizes.size() > 1 && !addSizes(level))) {
         return nullptr;
     }
@@ -390,12 +383,10 @@ PlainFaceType const *PlainFaceGatherer::findType(PlainFaceTypes &types, FaceWalk
 // False where points are the same.
 bool PlainFaceGatherer::writeFace(Level const &level, Index face, PlainFaceType const &type,
                                   Index *points) {
-    int const numPoints = type.GetNumPoints();
-    writePoints(type, points);
-    if (!areDistinct(points, numPoints)) {
+    if (!writePoints(type, points)) {
         return false;
     }
-    writeTurns(level, face, points + numPoints);
+    writeTurns(level, face, points + type.GetNumPoints());
     return true;
 }
 

@@ -162,14 +162,13 @@ private:
     // A vertex all of whose faces are in the patch, these beginning at a place of their own.
     struct Vertex {
         Index GetPlace(int face) const {
-            int const place = begin + face;
-            return first + (place < numFaces ? place : place - numFaces);
+            Index const place = begin + face;
+            return place < fan.end ? place : place - fan.GetNumFaces();
         }
 
         Index vert;
-        Index first;
-        int begin;
-        int numFaces;
+        Index begin;
+        FaceWalk::Fan fan;
     };
 
     PlainFaceType const *findType(PlainFaceTypes &types, FaceWalk const &walk, Index face);
@@ -177,14 +176,12 @@ private:
                    Index *points);
     bool findVertices(FarExt::internal::Level const &level, Index face);
     bool addSizes(FarExt::internal::Level const &level);
-    void writePoints(PlainFaceType const &type, Index *points) const;
+    bool writePoints(PlainFaceType const &type, Index *points);
     void writeTurns(FarExt::internal::Level const &level, Index face, Index *turns) const;
-    bool areDistinct(Index const *points, int numPoints);
 
     static constexpr std::size_t kNumStamps = 4096;
 
-    FaceWalk::Next const *_nexts = nullptr; // of the level
-    FaceWalk::Fan const *_fans = nullptr;
+    FaceWalk::Arrays const *_arrays = nullptr; // of the level
     int _faceSize = 0;
     int _numVerts = 0;
     Vertex _verts[PlainFaceKey::kMaxVerts] = {};

@@ -50,10 +50,21 @@ public:
     template <typename REAL>
     static void Pad(REAL const *point, std::size_t size, REAL *result) {
         if (size == 3) { // by far the most
-            std::copy_n(point, 3, result);
+            result[0] = point[0];
+            result[1] = point[1];
+            result[2] = point[2];
         } else {
             std::copy_n(point, size, result);
         }
+    }
+    /// Copies a point of \p paddedSize numbers.
+    /// \return  the end of the copy
+    template <typename REAL>
+    static REAL *CopyPadded(REAL const *point, std::size_t paddedSize, REAL *result) {
+        for (std::size_t k = 0; k < paddedSize; k += kPadding) {
+            result = std::copy_n(point + k, kPadding, result);
+        }
+        return result;
     }
     /// Writes the points that the step makes, \p paddedSize numbers each as those of the parent.
     template <typename REAL>
@@ -163,10 +174,8 @@ public:
     void CopyPoints(REAL const *points, std::size_t paddedSize, REAL *result) const {
         std::size_t const numRows = GetNumRows();
         for (std::size_t i = 0; i < numRows; ++i) {
-            REAL const *const point = points + getMatrixRow(i) * paddedSize;
-            for (std::size_t k = 0; k < paddedSize; k += StepMatrix::kPadding) {
-                result = std::copy_n(point + k, StepMatrix::kPadding, result);
-            }
+            result =
+                StepMatrix::CopyPadded(points + getMatrixRow(i) * paddedSize, paddedSize, result);
         }
     }
 
