@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "patchStream.h"
 
+#include "stream/forestData.h"
 #include "stream/patchPlans.h"
 
 #include "far_ext/executor.h"
@@ -60,7 +61,7 @@ private:
             _tessellation.reset();
             return _tessellation.emplace(make());
         }
-        _stream._forest->getKey(face, _treeKey);
+        _stream._forest->GetData().GetKey(face, _treeKey);
         if (!_plan || _treeKey != _planKey) {
             _plan.reset();
             _plan = _stream._plans->Find(_treeKey, make);
@@ -205,8 +206,8 @@ template <typename REAL>
 std::shared_ptr<internal::PatchPlans> PatchStream<REAL>::makePlans() const {
     internal::PlanOptions const options = {_options.GetTessellationOptions(),
                                            _options.HasDerivatives()};
-    return _forest && _forest->_plans
-               ? _forest->_plans->Find(options, _options.GetMaxMemory())
+    return _forest && _forest->GetData().plans
+               ? _forest->GetData().plans->Find(options, _options.GetMaxMemory())
                : std::make_shared<internal::PatchPlans>(options, _options.GetMaxMemory());
 }
 
@@ -400,7 +401,7 @@ CallStatus PatchStream<REAL>::checkRange(Index beginFace, Index endFace, bool *a
             "the forest has " + std::to_string(_forest->GetNumFaces()) + " trees, the mesh " +
                 std::to_string(base.GetNumFaces()) + " faces");
     }
-    if (_forest && &_forest->_faces.GetLevel() != &base.GetLevel()) {
+    if (_forest && &_forest->GetData().faces.GetLevel() != &base.GetLevel()) {
         return FarExt::internal::Failure(StatusCode::InvalidArgument,
                                          "the forest is that of another refiner");
     }
