@@ -66,20 +66,28 @@ CellForest::Number CellForest::GetFirstEdgePoint(Index edge) const {
 }
 
 void CellForest::MatchEdges() {
-    auto const hasTree = [&](Index face) {
-        return GetTree(face).GetFaceShape() == _data->faces.GetShape(face);
-    };
-    FarExt::internal::ParallelFor(
-        GetNumFaces(), [&](Index face) { _data->isMatched[std::size_t(face)] = hasTree(face); });
+    internal::ForestData &data = *_data;
+    FarExt::internal::ParallelFor(GetNumFaces(), [&](Index face) {
+        data.isMatched[std::size_t(face)] =
+            data.GetTree(face).GetFaceShape() == data.faces.GetShape(face);
+    });
     // The second face of an edge runs it backwards.
-    FarExt::internal::ParallelFor(Index(_data->edges.size()), [&](Index edge) {
-        Polyline &polyline = _data->polylines[std::size_t(edge)];
-        polyline = _data->edges[std::size_t(edge)];
+    FarExt::internal::ParallelFor(Index(data.edges.size()), [&](Index edge) {
+        Polyline &polyline = data.polylines[std::size_t(edge)];
+        polyline = data.edges[std::size_t(edge)];
         for (int side = 0; side < 2; ++side) {
-            auto const [face, local] = _data->faces.GetSide(edge, side);
-            if (face != Far::INDEX_INVALID && hasTree(face)) {
-                Polyline const own = GetTree(face).GetEdgePolyline(local);
-                polyline.Merge(side == 0 ? own : own.GetReversed());
+            auto const [face, local] = data.faces.GetSide(edge, side);
+            if (face == Far::INDEX_INVALID || !data.isMatched[std::size_t(face)]) {
+                continue;
+            }
+            Polyline own = data.GetTree(face).GetEdgePolyline(local);
+            if (side == 1 && own.GetNumPoints() > 0) {
+                own = own.GetReversed();
+            }
+            if (polyline.GetNumPoints() == 0) {
+                polyline = std::move(own);
+            } else {
+                polyline.Merge(own);
             }
         }
     });
@@ -88,13 +96,13 @@ void CellForest::MatchEdges() {
         Index start;
         Polyline polyline;
     };
-    Level const &level = _data->faces.GetLevel();
+    Level const &level = data.faces.GetLevel();
     std::map<Index, Line> lines;
     auto const forEachLineEdge = [&](auto const &function) {
         for (FarExt::internal::LineEdge const &lineEdge : level.lineEdges) {
             Index const start = level.edgeVerts[lineEdge.edge][0];
             Line &line = lines.emplace(lineEdge.line, Line{start, {}}).first->second;
-            function(_data->polylines[std::size_t(lineEdge.edge)], line.polyline,
+            function(data.polylines[std::size_t(lineEdge.edge)], line.polyline,
                      line.start != start);
         }
     };
@@ -104,9 +112,8 @@ void CellForest::MatchEdges() {
     forEachLineEdge([](Polyline &edge, Polyline const &line, bool isReversed) {
         edge = isReversed ? line.GetReversed() : line;
     });
-    for (std::size_t edge = 0; edge < _data->polylines.size(); ++edge) {
-        _data->firstPoints[edge + 1] =
-            _data->firstPoints[edge] + _data->polylines[edge].GetNumPoints();
+    for (std::size_t edge = 0; edge < data.polylines.size(); ++edge) {
+        data.firstPoints[edge + 1] = data.firstPoints[edge] + data.polylines[edge].GetNumPoints();
     }
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "patchStream.h"
 
+#include "cell/faceEvaluator.h"
 #include "stream/forestData.h"
 #include "stream/patchPlans.h"
 
@@ -27,6 +28,35 @@ namespace {
 // Faces that a worker takes at a time: few where the mesh has few.
 constexpr Far::Index kMaxRange = 128;
 constexpr Far::Index kNumRangesWanted = 64;
+
+/// \brief The points of some vertices of the mesh, each made by the first face that asked for it.
+///
+/// Plain faces make the same point of a vertex that they share, to the bit.
+template <typename REAL>
+class KnownVertices {
+public:
+    /// The point of a vertex, of \p size numbers; make(point) writes it where it is not known.
+    template <typename MAKE>
+    REAL const *Find(Far::Index vertex, std::size_t size, MAKE const &make) {
+        if (_vertices.empty()) {
+            _vertices.assign(kNumPlaces, Far::INDEX_INVALID);
+            _points.resize(kNumPlaces * size);
+        }
+        std::size_t const place = std::size_t(vertex) % kNumPlaces;
+        REAL *const point = &_points[place * size];
+        if (_vertices[place] != vertex) {
+            make(point);
+            _vertices[place] = vertex;
+        }
+        return point;
+    }
+
+private:
+    static constexpr std::size_t kNumPlaces = 4096;
+
+    std::vector<Far::Index> _vertices;
+    std::vector<REAL> _points;
+};
 
 } // namespace
 
@@ -143,7 +173,12 @@ private:
         std::size_t const size = std::size_t(tessellation.GetNumCoords()) * std::size_t(desc.size);
         _points.resize(size);
         gather(_meshPoints, _meshPointDesc);
-        if (_stream._options.HasDerivatives()) {
+        bool const hasVerticesAlone = tessellation.GetNumSections() == 1 &&
+                                      tessellation.GetNumCoords() == tessellation.GetFaceSize();
+        if (hasVerticesAlone && !_stream._options.HasDerivatives() &&
+            _surface.GetFace().type.GetPlain()) {
+            evaluateVertices(face);
+        } else if (_stream._options.HasDerivatives()) {
             _du.resize(size);
             _dv.resize(size);
             _surface.Evaluate(tessellation, _controlPoints.data(), desc, _points.data(), _du.data(),
@@ -152,6 +187,20 @@ private:
             _surface.Evaluate(tessellation, _controlPoints.data(), desc, _points.data(), desc);
         }
         return true;
+    }
+
+    // Of a plain face whose tessellation has no other places.
+    void evaluateVertices(Index face) {
+        PointDescriptor const desc(_meshPointDesc.size);
+        auto const pointSize = std::size_t(desc.size);
+        internal::FaceEvaluator<REAL> const evaluator(_surface.GetFace(), _controlPoints.data(),
+                                                      desc);
+        for (int local = 0; local < _surface.GetFaceSize(); ++local) {
+            REAL const *const point =
+                _vertices.Find(_factory.GetFaces().GetVertex(face, local), pointSize,
+                               [&](REAL *result) { evaluator.EvaluateVertex(local, result); });
+            std::copy_n(point, pointSize, &_points[std::size_t(local) * pointSize]);
+        }
     }
 
     bool evaluateValues(Index face, LevelTessellation const &tessellation, CallStatus &status) {
@@ -183,6 +232,7 @@ private:
     std::vector<Values> const &_values;
     Sink const &_sink;
     Surface<REAL> _surface;
+    KnownVertices<REAL> _vertices;
     std::vector<REAL> _controlPoints;
     std::vector<REAL> _points;
     std::vector<REAL> _du;

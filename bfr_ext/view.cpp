@@ -589,16 +589,19 @@ CellForest makeForest(ViewData const &view, SurfaceFactory const &factory, Bound
     bool const hasLastEdges = last && last->edges.size() == forest.edges.size();
     std::vector<std::vector<CellVisibility>> visibility(counts ? std::size_t(forest.GetNumFaces())
                                                                : 0);
+    // A tree grows in the memory of the last one, and is kept in no more than it takes.
     struct State {
         FaceSurface<REAL> surface;
         FaceMeasures measures;
+        CellTree tree;
     };
+    constexpr int kTriangle = 3;
     std::atomic<Index> firstWithout = forest.GetNumFaces(); // without a surface
     constexpr Index kFacesOfRange = 16;
     FarExt::internal::ParallelForRange(
         forest.GetNumFaces(),
         [&] {
-            return State{{factory, meshPoints, stride}, {}};
+            return State{{factory, meshPoints, stride}, {}, CellTree(kTriangle)};
         },
         [&](State &state, Index begin, Index end) {
             for (Index face = begin; face < end; ++face) {
@@ -616,13 +619,18 @@ CellForest makeForest(ViewData const &view, SurfaceFactory const &factory, Bound
                     state.surface.Init(face);
                     return state.surface.GetBase();
                 };
-                refineTree(view, forest.trees[std::size_t(face)], std::cref(getBase), measures,
+                CellTree &tree = forest.trees[std::size_t(face)];
+                state.tree = tree;
+                refineTree(view, state.tree, std::cref(getBase), measures,
                            last ? &last->GetTree(face) : nullptr,
                            counts ? &visibility[std::size_t(face)] : nullptr);
+                if (state.tree.IsRefined(0)) {
+                    tree = state.tree;
+                }
                 if (bounds) {
                     bounds->Trim(face, memory);
                 }
-                for (int local = 0; local < faces.GetShape(face).size; ++local) {
+                for (int local = 0; local < tree.GetFaceSize(); ++local) {
                     auto const [edge, isReversed] = faces.GetEdge(face, local);
                     // The first of its faces that has a surface makes an edge, since holes have none.
                     if (!isInfSharp(edge) ||
