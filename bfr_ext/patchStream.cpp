@@ -221,13 +221,15 @@ private:
         PointDescriptor const desc(_meshPointDesc.size);
         std::size_t const size = std::size_t(tessellation.GetNumCoords()) * std::size_t(desc.size);
         _points.resize(size);
-        gather(_meshPoints, _meshPointDesc);
         bool const hasVerticesAlone = tessellation.GetNumSections() == 1 &&
                                       tessellation.GetNumCoords() == tessellation.GetFaceSize();
         if (hasVerticesAlone && !_stream._options.HasDerivatives() &&
             _surface.GetFace().type.GetPlain()) {
             evaluateVertices(face);
-        } else if (_stream._options.HasDerivatives()) {
+            return true;
+        }
+        gather(_meshPoints, _meshPointDesc);
+        if (_stream._options.HasDerivatives()) {
             _du.resize(size);
             _dv.resize(size);
             _surface.Evaluate(tessellation, _controlPoints.data(), desc, _points.data(), _du.data(),
@@ -242,12 +244,14 @@ private:
     void evaluateVertices(Index face) {
         PointDescriptor const desc(_meshPointDesc.size);
         auto const pointSize = std::size_t(desc.size);
-        internal::FaceEvaluator<REAL> const evaluator(_surface.GetFace(), _controlPoints.data(),
-                                                      desc);
         for (int local = 0; local < _surface.GetFaceSize(); ++local) {
+            auto const make = [&](REAL *result) {
+                gather(_meshPoints, _meshPointDesc);
+                internal::FaceEvaluator<REAL>(_surface.GetFace(), _controlPoints.data(), desc)
+                    .EvaluateVertex(local, result);
+            };
             REAL const *const point =
-                _vertices.Find(_factory.GetFaces().GetVertex(face, local), pointSize,
-                               [&](REAL *result) { evaluator.EvaluateVertex(local, result); });
+                _vertices.Find(_factory.GetFaces().GetVertex(face, local), pointSize, make);
             std::copy_n(point, pointSize, &_points[std::size_t(local) * pointSize]);
         }
     }

@@ -137,7 +137,7 @@ public:
         /// Patches with the same levels share a tessellation.  If not all tessellations fit, patches that share one are made
         /// in succession, so that few tessellations are made twice.
         ///
-        /// A thread has one patch, with its points, at a time.  Making a tessellation takes about 300 bytes a point: a face
+        /// A thread has one patch, and 4096 points of vertices.  Making a tessellation takes about 300 bytes a point: a face
         /// may take a fourth of the bytes that are set, or 3 megabytes if these are more (4 with derivatives).  Faces that
         /// take more come in sections.  A single cell is never cut: it has all points that finer edges of the face, or cells
         /// beside it, have on its sides.

@@ -111,6 +111,9 @@ TEST(PatchStreamTest, HandsOutWhatSurfacesAre) {
         expectSurfaces<double>(GetFeatureShape(name), ReferenceMask::Cosine, 6, 1e-12);
     }
     for (Shape const &shape : GetManifoldShapes()) {
+        // Faces with vertices alone.
+        expectSurfaces<float>(shape, ReferenceMask::Smooth, 1, 0);
+        expectSurfaces<double>(shape, ReferenceMask::Average, 1, 0);
         if (shape.GetNumFaces() <= 30) {
             expectSurfaces<double>(shape, ReferenceMask::Smooth, 5, 1e-12);
             expectSurfaces<float>(shape, ReferenceMask::Average, 4, 1e-5);
