@@ -10,6 +10,7 @@
 #include "regression/shapes/featureShapes.h"
 #include "regression/shapes/flatShapes.h"
 #include "regression/shapes/shapeDescriptor.h"
+#include "regression/shapes/torus.h"
 
 #include <gtest/gtest.h>
 
@@ -104,6 +105,13 @@ void expectSurfaces(Shape const &shape, ReferenceMask mask, int numLevels, doubl
 }
 
 } // namespace
+
+// More vertices than a thread remembers.
+TEST(PatchStreamTest, HandsOutVerticesOfManyFaces) {
+    ThreadsScope const threads(1);
+    expectSurfaces<float>(MakeTorus(72, 72, TorusFaces::IrregularTriangles), ReferenceMask::Smooth,
+                          1, 0);
+}
 
 TEST(PatchStreamTest, HandsOutWhatSurfacesAre) {
     for (char const *const name :
