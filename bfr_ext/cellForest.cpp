@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cellForest.h"
 
+#include "stream/forestData.h"
+
 #include "far_ext/vtr/level.h"
 #include "far_ext/vtr/parallel.h"
 
@@ -13,33 +15,79 @@ namespace OpenSubdivHex::BfrExt {
 
 using FarExt::internal::Level;
 
-CellForest::CellForest(FarExt::TopologyRefiner const &refiner)
-    : _faces(refiner.GetLevel(refiner.GetHexSchemeOptions().GetSurfaceLevel()).GetLevel()) {
-    _trees.reserve(std::size_t(_faces.GetNumFaces()));
-    _isMatched.resize(std::size_t(_faces.GetNumFaces()));
-    for (Index face = 0; face < _faces.GetNumFaces(); ++face) {
-        _trees.emplace_back(_faces.GetShape(face));
+internal::ForestData::ForestData(FarExt::SurfaceFaces const &ofMesh) : faces(ofMesh) {
+    trees.reserve(std::size_t(faces.GetNumFaces()));
+    isMatched.resize(std::size_t(faces.GetNumFaces()));
+    for (Index face = 0; face < faces.GetNumFaces(); ++face) {
+        trees.emplace_back(faces.GetShape(face));
     }
-    _edges.resize(std::size_t(_faces.GetNumEdges()));
-    _polylines = _edges;
-    _firstPoints.assign(_polylines.size() + 1, _faces.GetLevel().numVertices);
+    edges.resize(std::size_t(faces.GetNumEdges()));
+    polylines = edges;
+    firstPoints.assign(polylines.size() + 1, faces.GetLevel().numVertices);
+}
+
+CellForest::CellForest(FarExt::TopologyRefiner const &refiner)
+    : _data(std::make_unique<internal::ForestData>(FarExt::SurfaceFaces(
+          refiner.GetLevel(refiner.GetHexSchemeOptions().GetSurfaceLevel()).GetLevel()))) {}
+
+CellForest::CellForest(CellForest const &other)
+    : _data(std::make_unique<internal::ForestData>(*other._data)) {}
+
+CellForest &CellForest::operator=(CellForest const &other) {
+    _data = std::make_unique<internal::ForestData>(*other._data);
+    return *this;
+}
+
+CellForest::CellForest(CellForest &&other) noexcept = default;
+CellForest &CellForest::operator=(CellForest &&other) noexcept = default;
+CellForest::~CellForest() = default;
+
+int CellForest::GetNumFaces() const { return _data->GetNumFaces(); }
+
+void CellForest::SetTree(Index face, CellTree tree) {
+    _data->trees[std::size_t(face)] = std::move(tree);
+    _data->isMatched[std::size_t(face)] = false;
+}
+
+CellTree const &CellForest::GetTree(Index face) const { return _data->GetTree(face); }
+
+void CellForest::SetEdge(Index edge, Polyline polyline) {
+    _data->edges[std::size_t(edge)] = std::move(polyline);
+}
+
+Polyline const &CellForest::GetPolyline(Index edge) const {
+    return _data->polylines[std::size_t(edge)];
+}
+
+CellForest::Number CellForest::GetNumBoundaryPoints() const { return _data->firstPoints.back(); }
+
+CellForest::Number CellForest::GetFirstEdgePoint(Index edge) const {
+    return _data->firstPoints[std::size_t(edge)];
 }
 
 void CellForest::MatchEdges() {
-    auto const hasTree = [&](Index face) {
-        return GetTree(face).GetFaceShape() == _faces.GetShape(face);
-    };
-    FarExt::internal::ParallelFor(
-        GetNumFaces(), [&](Index face) { _isMatched[std::size_t(face)] = hasTree(face); });
+    internal::ForestData &data = *_data;
+    FarExt::internal::ParallelFor(GetNumFaces(), [&](Index face) {
+        data.isMatched[std::size_t(face)] =
+            data.GetTree(face).GetFaceShape() == data.faces.GetShape(face);
+    });
     // The second face of an edge runs it backwards.
-    FarExt::internal::ParallelFor(Index(_edges.size()), [&](Index edge) {
-        Polyline &polyline = _polylines[std::size_t(edge)];
-        polyline = _edges[std::size_t(edge)];
+    FarExt::internal::ParallelFor(Index(data.edges.size()), [&](Index edge) {
+        Polyline &polyline = data.polylines[std::size_t(edge)];
+        polyline = data.edges[std::size_t(edge)];
         for (int side = 0; side < 2; ++side) {
-            auto const [face, local] = _faces.GetSide(edge, side);
-            if (face != Far::INDEX_INVALID && hasTree(face)) {
-                Polyline const own = GetTree(face).GetEdgePolyline(local);
-                polyline.Merge(side == 0 ? own : own.GetReversed());
+            auto const [face, local] = data.faces.GetSide(edge, side);
+            if (face == Far::INDEX_INVALID || !data.isMatched[std::size_t(face)]) {
+                continue;
+            }
+            Polyline own = data.GetTree(face).GetEdgePolyline(local);
+            if (side == 1 && own.GetNumPoints() > 0) {
+                own = own.GetReversed();
+            }
+            if (polyline.GetNumPoints() == 0) {
+                polyline = std::move(own);
+            } else {
+                polyline.Merge(own);
             }
         }
     });
@@ -48,13 +96,14 @@ void CellForest::MatchEdges() {
         Index start;
         Polyline polyline;
     };
-    Level const &level = _faces.GetLevel();
+    Level const &level = data.faces.GetLevel();
     std::map<Index, Line> lines;
     auto const forEachLineEdge = [&](auto const &function) {
         for (FarExt::internal::LineEdge const &lineEdge : level.lineEdges) {
             Index const start = level.edgeVerts[lineEdge.edge][0];
             Line &line = lines.emplace(lineEdge.line, Line{start, {}}).first->second;
-            function(_polylines[std::size_t(lineEdge.edge)], line.polyline, line.start != start);
+            function(data.polylines[std::size_t(lineEdge.edge)], line.polyline,
+                     line.start != start);
         }
     };
     forEachLineEdge([](Polyline const &edge, Polyline &line, bool isReversed) {
@@ -63,22 +112,22 @@ void CellForest::MatchEdges() {
     forEachLineEdge([](Polyline &edge, Polyline const &line, bool isReversed) {
         edge = isReversed ? line.GetReversed() : line;
     });
-    for (std::size_t edge = 0; edge < _polylines.size(); ++edge) {
-        _firstPoints[edge + 1] = _firstPoints[edge] + _polylines[edge].GetNumPoints();
+    for (std::size_t edge = 0; edge < data.polylines.size(); ++edge) {
+        data.firstPoints[edge + 1] = data.firstPoints[edge] + data.polylines[edge].GetNumPoints();
     }
 }
 
 bool CellForest::IsMatched(Index face) const {
-    if (_isMatched[std::size_t(face)]) {
+    if (_data->isMatched[std::size_t(face)]) {
         return true;
     }
     CellTree const &tree = GetTree(face);
-    if (tree.GetFaceShape() != _faces.GetShape(face)) {
+    if (tree.GetFaceShape() != _data->faces.GetShape(face)) {
         return false;
     }
     for (int local = 0; local < tree.GetFaceSize(); ++local) {
         Polyline const own = tree.GetEdgePolyline(local);
-        auto const [edge, isReversed] = _faces.GetEdge(face, local);
+        auto const [edge, isReversed] = _data->faces.GetEdge(face, local);
         if (!GetPolyline(edge).Contains(isReversed ? own.GetReversed() : own)) {
             return false;
         }
@@ -88,8 +137,8 @@ bool CellForest::IsMatched(Index face) const {
 
 std::vector<Polyline> CellForest::GetFacePolylines(Index face) const {
     std::vector<Polyline> edges;
-    for (int local = 0; local < _faces.GetShape(face).size; ++local) {
-        auto const [edge, isReversed] = _faces.GetEdge(face, local);
+    for (int local = 0; local < _data->faces.GetShape(face).size; ++local) {
+        auto const [edge, isReversed] = _data->faces.GetEdge(face, local);
         Polyline const &polyline = GetPolyline(edge);
         edges.push_back(isReversed ? polyline.GetReversed() : polyline);
     }
@@ -98,22 +147,21 @@ std::vector<Polyline> CellForest::GetFacePolylines(Index face) const {
 
 LevelTessellation CellForest::GetTessellation(Index face,
                                               LevelTessellation::Options options) const {
-    if (GetTree(face).GetFaceShape() != _faces.GetShape(face)) {
+    if (GetTree(face).GetFaceShape() != _data->faces.GetShape(face)) {
         return LevelTessellation(Parameterization(), 0);
     }
     return LevelTessellation(GetTree(face), GetFacePolylines(face).data(), options);
 }
 
-// Writes what tells the tessellation of a face.
-void CellForest::getKey(Index face, std::vector<int> &key) const {
+void internal::ForestData::GetKey(Index face, std::vector<int> &key) const {
     CellTree const &tree = GetTree(face);
     key = {tree.GetFaceSize(), tree.GetFaceShape().isHalf ? 1 : 0};
     for (int cell = 0; cell < tree.GetNumCells(); ++cell) {
         key.push_back(tree.GetFirstChild(cell));
     }
     for (int local = 0; local < tree.GetFaceSize(); ++local) {
-        auto const [edge, isReversed] = _faces.GetEdge(face, local);
-        std::vector<Polyline::Place> const &places = GetPolyline(edge).GetPlaces();
+        auto const [edge, isReversed] = faces.GetEdge(face, local);
+        std::vector<Polyline::Place> const &places = polylines[std::size_t(edge)].GetPlaces();
         key.push_back(-1 - int(places.size()));
         if (isReversed) {
             std::transform(places.rbegin(), places.rend(), std::back_inserter(key),
@@ -129,9 +177,9 @@ int CellForest::GetBoundaryPoints(Index face, int points[]) const {
         return 0;
     }
     int numPoints = 0;
-    for (int local = 0; local < _faces.GetShape(face).size; ++local) {
-        auto const [edge, isReversed] = _faces.GetEdge(face, local);
-        points[numPoints++] = _faces.GetVertex(face, local);
+    for (int local = 0; local < _data->faces.GetShape(face).size; ++local) {
+        auto const [edge, isReversed] = _data->faces.GetEdge(face, local);
+        points[numPoints++] = _data->faces.GetVertex(face, local);
         int const numInner = GetPolyline(edge).GetNumPoints();
         for (int i = 0; i < numInner; ++i) {
             points[numPoints++] =

@@ -4,7 +4,6 @@
 
 #include "levelTessellation.h"
 
-#include "far_ext/surfaceFaces.h"
 #include "far_ext/topologyRefiner.h"
 
 #include <cstdint>
@@ -14,7 +13,7 @@
 namespace OpenSubdivHex::BfrExt {
 
 namespace internal {
-class KeptPlans;
+struct ForestData;
 }
 
 /// \brief A watertight tessellation of a mesh: a tree of cells for each base face, and a polyline for each edge.
@@ -32,7 +31,8 @@ class KeptPlans;
 /// direction of the edge, then those of edge 1, and so on.  A non-manifold edge has come apart into one edge for each face:
 /// these edges get the same polyline, but each its own points.
 ///
-/// Several threads may read a forest, and SetTree() may be called by several for different faces.
+/// Forests are values; one that was moved from can only be assigned to.  Several threads may read a forest, and SetTree() may
+/// be called by several for different faces.
 /// Arguments are not checked; std::bad_alloc passes through.
 class OPENSUBDIVHEX_API CellForest {
 public:
@@ -46,19 +46,21 @@ public:
     /// Base faces and edges are those of SurfaceFactory::GetFaces(), of the surface level, to which it refers and
     /// which the refiner has.
     explicit CellForest(FarExt::TopologyRefiner const &refiner);
+    CellForest(CellForest const &other);
+    CellForest &operator=(CellForest const &other);
+    CellForest(CellForest &&other) noexcept;
+    CellForest &operator=(CellForest &&other) noexcept;
+    ~CellForest();
 
     /// Base faces.
-    int GetNumFaces() const { return int(_trees.size()); }
+    int GetNumFaces() const;
     /// Sets the tree of a face, for as many vertices as the face has.
-    void SetTree(Index face, CellTree tree) {
-        _trees[std::size_t(face)] = std::move(tree);
-        _isMatched[std::size_t(face)] = false;
-    }
+    void SetTree(Index face, CellTree tree);
     /// The tree of a face.
-    CellTree const &GetTree(Index face) const { return _trees[std::size_t(face)]; }
+    CellTree const &GetTree(Index face) const;
 
     /// Sets points that an edge has in addition to those of its faces' cells, in the direction of the edge.
-    void SetEdge(Index edge, Polyline polyline) { _edges[std::size_t(edge)] = std::move(polyline); }
+    void SetEdge(Index edge, Polyline polyline);
     /// \brief Finds the polylines of all edges: each gets the points that the trees of its faces have on the edge.
     ///
     /// Call it after SetTree() and SetEdge().  A tree for another number of vertices than its face has is ignored.
@@ -67,7 +69,7 @@ public:
     /// points of the tree.  It is true after MatchEdges().
     bool IsMatched(Index face) const;
     /// The polyline of an edge, in the direction of the edge.
-    Polyline const &GetPolyline(Index edge) const { return _polylines[std::size_t(edge)]; }
+    Polyline const &GetPolyline(Index edge) const;
     /// The polylines of the edges of a face, in the direction of the face.
     std::vector<Polyline> GetFacePolylines(Index face) const;
     /// The tessellation of a face; invalid where not IsMatched().
@@ -76,28 +78,22 @@ public:
                     LevelTessellation::Options options = LevelTessellation::Options()) const;
 
     /// Points that faces share, or might share: base vertices and the inner points of edges.
-    Number GetNumBoundaryPoints() const { return _firstPoints.back(); }
+    Number GetNumBoundaryPoints() const;
     /// The first inner point of an edge; those of GetPolyline() follow one another.
-    Number GetFirstEdgePoint(Index edge) const { return _firstPoints[std::size_t(edge)]; }
+    Number GetFirstEdgePoint(Index edge) const;
     /// \brief Writes the numbers of the points on the boundary of a face, in the order of its
     /// tessellation's coordinates: for LevelTessellation::TransformFacetCoordIndices().
     /// \return  how many they are; 0, with nothing written, where GetNumBoundaryPoints() is above 2^31 - 1
     int GetBoundaryPoints(Index face, int points[]) const;
 
+    /// @name For the library's own use
+    /// @{
+    internal::ForestData const &GetData() const { return *_data; }
+    internal::ForestData &GetData() { return *_data; }
+    /// @}
+
 private:
-    template <typename REAL>
-    friend class PatchStream;
-    friend class View;
-
-    void getKey(Index face, std::vector<int> &key) const;
-
-    FarExt::SurfaceFaces _faces;
-    std::vector<CellTree> _trees;
-    std::vector<char> _isMatched;                // by face; where it is not known, too, it is false
-    std::vector<Polyline> _edges;                // what was set
-    std::vector<Polyline> _polylines;            // the same with the points of faces
-    std::vector<Number> _firstPoints;            // by edge; then their end
-    std::shared_ptr<internal::KeptPlans> _plans; // of forests of the same mesh; null: none
+    std::unique_ptr<internal::ForestData> _data;
 };
 
 } // namespace OpenSubdivHex::BfrExt

@@ -97,6 +97,8 @@ void CellTree::addPoints(int cell, std::size_t edge, int start, int end,
         addPoints(child + side, edge, start, end, places);
         return;
     }
+    constexpr std::size_t kUsual = 12; // of edges of four levels, in the smallest block of a heap
+    places.reserve(kUsual);
     int const first = start + (end - start) / 4;
     int const second = end - (end - start) / 4;
     addPoints(child + GetNumChildren(cell) - 1, edge, start, first, places);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "patchStream.h"
 
+#include "cell/faceEvaluator.h"
+#include "stream/forestData.h"
 #include "stream/patchPlans.h"
 
 #include "far_ext/executor.h"
@@ -27,13 +29,91 @@ namespace {
 constexpr Far::Index kMaxRange = 128;
 constexpr Far::Index kNumRangesWanted = 64;
 
+/// \brief The points of some vertices of the mesh, each made by the first face that asked for it.
+///
+/// Plain faces make the same point of a vertex that they share, to the bit.
+template <typename REAL>
+class KnownVertices {
+public:
+    /// The point of a vertex, of \p size numbers; make(point) writes it where it is not known.
+    template <typename MAKE>
+    REAL const *Find(Far::Index vertex, std::size_t size, MAKE const &make) {
+        if (_vertices.empty()) {
+            _vertices.assign(kNumPlaces, Far::INDEX_INVALID);
+            _points.resize(kNumPlaces * size);
+        }
+        std::size_t const place = std::size_t(vertex) % kNumPlaces;
+        REAL *const point = &_points[place * size];
+        if (_vertices[place] != vertex) {
+            make(point);
+            _vertices[place] = vertex;
+        }
+        return point;
+    }
+
+private:
+    static constexpr std::size_t kNumPlaces = 4096;
+
+    std::vector<Far::Index> _vertices;
+    std::vector<REAL> _points;
+};
+
 } // namespace
+
+/// \brief The data of a stream, with all that it does.
+template <typename REAL>
+class PatchStream<REAL>::Data {
+public:
+    /// \param forest  null: levels
+    Data(SurfaceFactory const &factory, PatchLevels levels, CellForest const *forest,
+         Options const &options)
+        : _factory(factory), _levels(std::move(levels)), _forest(forest), _options(options),
+          _plans(makePlans()) {}
+
+    SurfaceFactory const &GetFactory() const { return _factory; }
+    PatchLevels const &GetLevels() const { return _levels; }
+    CellForest const *GetForest() const { return _forest; }
+    Options const &GetOptions() const { return _options; }
+
+    bool Run(REAL const meshPoints[], PointDescriptor const &meshPointDesc,
+             std::vector<Values> const &values, Index beginFace, Index endFace, Sink const &sink,
+             CallStatus *status) const;
+    bool RunTessellations(TessellationSink const &sink, CallStatus *status) const;
+    int GetNumSections(Index face) const;
+    LevelTessellation MakeTessellation(Index face) const;
+    LevelTessellation MakeTessellation(Index face, int section) const;
+    SectionPolygons GetSectionPolygons(Index face) const;
+
+private:
+    class TessellationFinder;
+    class Worker;
+    struct Batch;
+
+    std::shared_ptr<internal::PatchPlans> makePlans() const;
+    CallStatus checkRange(Index beginFace, Index endFace, bool *arePlansKept = nullptr) const;
+    CallStatus checkFace(Index face, internal::FaceLevels &levels) const;
+    CallStatus checkLevels(Index face, internal::FaceLevels const &levels) const;
+    CallStatus checkTree(Index face) const;
+    void getLevels(Index face, internal::FaceLevels &levels) const;
+    bool isCut(Index face, internal::FaceLevels const &levels) const;
+    std::unique_ptr<internal::FaceSections const> makeSections(Index face) const;
+    Index takeFaces(Index beginFace, Index endFace, Batch &batch) const;
+    template <typename MAKE>
+    bool runWorkers(Index beginFace, Index endFace, bool arePlansKept, MAKE const &makeWorker,
+                    CallStatus &status) const;
+
+    SurfaceFactory const &_factory;
+    PatchLevels const _levels;
+    CellForest const *const _forest; // null: levels
+    Options const _options;
+    std::shared_ptr<internal::PatchPlans> _plans;
+};
 
 /// \brief Finds the tessellations of patches, or makes them: each is there until the next one is asked for.
 template <typename REAL>
-class PatchStream<REAL>::TessellationFinder {
+class PatchStream<REAL>::Data::TessellationFinder {
 public:
-    explicit TessellationFinder(PatchStream const &stream) : _stream(stream) {}
+    explicit TessellationFinder(Data const &stream) : _stream(stream) {}
 
     /// \param section  -1: of the face as a whole
     LevelTessellation const &Find(Index face, int section) {
@@ -60,7 +140,7 @@ private:
             _tessellation.reset();
             return _tessellation.emplace(make());
         }
-        _stream._forest->getKey(face, _treeKey);
+        _stream._forest->GetData().GetKey(face, _treeKey);
         if (!_plan || _treeKey != _planKey) {
             _plan.reset();
             _plan = _stream._plans->Find(_treeKey, make);
@@ -89,7 +169,7 @@ private:
         return _plan->tessellation;
     }
 
-    PatchStream const &_stream;
+    Data const &_stream;
     std::optional<LevelTessellation> _tessellation; // of a tree
     internal::FaceLevels _levels;
     internal::FaceLevels _planLevels;
@@ -102,9 +182,9 @@ private:
 
 /// \brief Makes the patches of some faces one by one, and hands them out.
 template <typename REAL>
-class alignas(FarExt::internal::kCacheLine) PatchStream<REAL>::Worker {
+class alignas(FarExt::internal::kCacheLine) PatchStream<REAL>::Data::Worker {
 public:
-    Worker(PatchStream const &stream, REAL const *meshPoints, PointDescriptor const &meshPointDesc,
+    Worker(Data const &stream, REAL const *meshPoints, PointDescriptor const &meshPointDesc,
            std::vector<Values> const &values, Sink const &sink)
         : _stream(stream), _finder(stream), _factory(stream._factory), _meshPoints(meshPoints),
           _meshPointDesc(meshPointDesc), _values(values), _sink(sink), _results(values.size()),
@@ -141,6 +221,13 @@ private:
         PointDescriptor const desc(_meshPointDesc.size);
         std::size_t const size = std::size_t(tessellation.GetNumCoords()) * std::size_t(desc.size);
         _points.resize(size);
+        bool const hasVerticesAlone = tessellation.GetNumSections() == 1 &&
+                                      tessellation.GetNumCoords() == tessellation.GetFaceSize();
+        if (hasVerticesAlone && !_stream._options.HasDerivatives() &&
+            _surface.GetFace().type.GetPlain()) {
+            evaluateVertices(face);
+            return true;
+        }
         gather(_meshPoints, _meshPointDesc);
         if (_stream._options.HasDerivatives()) {
             _du.resize(size);
@@ -151,6 +238,22 @@ private:
             _surface.Evaluate(tessellation, _controlPoints.data(), desc, _points.data(), desc);
         }
         return true;
+    }
+
+    // Of a plain face whose tessellation has no other places.
+    void evaluateVertices(Index face) {
+        PointDescriptor const desc(_meshPointDesc.size);
+        auto const pointSize = std::size_t(desc.size);
+        for (int local = 0; local < _surface.GetFaceSize(); ++local) {
+            auto const make = [&](REAL *result) {
+                gather(_meshPoints, _meshPointDesc);
+                internal::FaceEvaluator<REAL>(_surface.GetFace(), _controlPoints.data(), desc)
+                    .EvaluateVertex(local, result);
+            };
+            REAL const *const point =
+                _vertices.Find(_factory.GetFaces().GetVertex(face, local), pointSize, make);
+            std::copy_n(point, pointSize, &_points[std::size_t(local) * pointSize]);
+        }
     }
 
     bool evaluateValues(Index face, LevelTessellation const &tessellation, CallStatus &status) {
@@ -174,7 +277,7 @@ private:
         return true;
     }
 
-    PatchStream const &_stream;
+    Data const &_stream;
     TessellationFinder _finder;
     SurfaceFactory const &_factory;
     REAL const *const _meshPoints;
@@ -182,6 +285,7 @@ private:
     std::vector<Values> const &_values;
     Sink const &_sink;
     Surface<REAL> _surface;
+    KnownVertices<REAL> _vertices;
     std::vector<REAL> _controlPoints;
     std::vector<REAL> _points;
     std::vector<REAL> _du;
@@ -191,28 +295,17 @@ private:
 };
 
 template <typename REAL>
-PatchStream<REAL>::PatchStream(SurfaceFactory const &factory, PatchLevels levels,
-                               Options const &options)
-    : _factory(factory), _levels(std::move(levels)), _forest(nullptr), _options(options),
-      _plans(makePlans()) {}
-
-template <typename REAL>
-PatchStream<REAL>::PatchStream(SurfaceFactory const &factory, CellForest const &forest,
-                               Options const &options)
-    : _factory(factory), _levels(0), _forest(&forest), _options(options), _plans(makePlans()) {}
-
-template <typename REAL>
-std::shared_ptr<internal::PatchPlans> PatchStream<REAL>::makePlans() const {
+std::shared_ptr<internal::PatchPlans> PatchStream<REAL>::Data::makePlans() const {
     internal::PlanOptions const options = {_options.GetTessellationOptions(),
                                            _options.HasDerivatives()};
-    return _forest && _forest->_plans
-               ? _forest->_plans->Find(options, _options.GetMaxMemory())
+    return _forest && _forest->GetData().plans
+               ? _forest->GetData().plans->Find(options, _options.GetMaxMemory())
                : std::make_shared<internal::PatchPlans>(options, _options.GetMaxMemory());
 }
 
 // The levels of the edges, then that of the inside; none of a forest.
 template <typename REAL>
-void PatchStream<REAL>::getLevels(Index face, internal::FaceLevels &levels) const {
+void PatchStream<REAL>::Data::getLevels(Index face, internal::FaceLevels &levels) const {
     levels.levels.clear();
     if (_forest) {
         return;
@@ -227,13 +320,14 @@ void PatchStream<REAL>::getLevels(Index face, internal::FaceLevels &levels) cons
 
 // Whether a face comes in sections.
 template <typename REAL>
-bool PatchStream<REAL>::isCut(Index face, internal::FaceLevels const &levels) const {
+bool PatchStream<REAL>::Data::isCut(Index face, internal::FaceLevels const &levels) const {
     return _forest ? _plans->IsCut(_forest->GetTree(face)) : _plans->IsCut(levels);
 }
 
 // The sections of a face that is cut.
 template <typename REAL>
-std::unique_ptr<internal::FaceSections const> PatchStream<REAL>::makeSections(Index face) const {
+std::unique_ptr<internal::FaceSections const>
+PatchStream<REAL>::Data::makeSections(Index face) const {
     using internal::FaceSections;
     int const maxLeaves = _plans->GetMaxLeaves();
     if (_forest) {
@@ -248,7 +342,7 @@ std::unique_ptr<internal::FaceSections const> PatchStream<REAL>::makeSections(In
 /// \brief Some faces that are no holes, and what patches they have: those of faces in sections stand section
 /// by section, so that faces with the same levels have each of them side by side.
 template <typename REAL>
-struct PatchStream<REAL>::Batch {
+struct PatchStream<REAL>::Data::Batch {
     /// Faces that follow one another, whole or with the same sections.
     struct Group {
         std::size_t firstFace;
@@ -289,7 +383,7 @@ struct PatchStream<REAL>::Batch {
 // Takes the next faces that are no holes, of a stream whose plans do not all fit in memory; where not all
 // of theirs do, faces with the same levels stand side by side.
 template <typename REAL>
-Far::Index PatchStream<REAL>::takeFaces(Index beginFace, Index endFace, Batch &batch) const {
+Far::Index PatchStream<REAL>::Data::takeFaces(Index beginFace, Index endFace, Batch &batch) const {
     constexpr std::size_t kMinNumFaces = 1024;
     constexpr std::size_t kShareOfMemory = 16;
     constexpr double kMaxLeaves = 1 << 30;
@@ -350,14 +444,14 @@ Far::Index PatchStream<REAL>::takeFaces(Index beginFace, Index endFace, Batch &b
 }
 
 template <typename REAL>
-int PatchStream<REAL>::GetNumSections(Index face) const {
+int PatchStream<REAL>::Data::GetNumSections(Index face) const {
     internal::FaceLevels levels;
     getLevels(face, levels);
     return isCut(face, levels) ? makeSections(face)->GetNumSections() : 1;
 }
 
 template <typename REAL>
-LevelTessellation PatchStream<REAL>::MakeTessellation(Index face, int section) const {
+LevelTessellation PatchStream<REAL>::Data::MakeTessellation(Index face, int section) const {
     internal::FaceLevels levels;
     getLevels(face, levels);
     return isCut(face, levels)
@@ -366,7 +460,7 @@ LevelTessellation PatchStream<REAL>::MakeTessellation(Index face, int section) c
 }
 
 template <typename REAL>
-LevelTessellation PatchStream<REAL>::MakeTessellation(Index face) const {
+LevelTessellation PatchStream<REAL>::Data::MakeTessellation(Index face) const {
     if (_forest) {
         return _forest->GetTessellation(face, _options.GetTessellationOptions());
     }
@@ -378,7 +472,8 @@ LevelTessellation PatchStream<REAL>::MakeTessellation(Index face) const {
 
 // The status names the first wrong face, whichever thread finds it.
 template <typename REAL>
-CallStatus PatchStream<REAL>::checkRange(Index beginFace, Index endFace, bool *arePlansKept) const {
+CallStatus PatchStream<REAL>::Data::checkRange(Index beginFace, Index endFace,
+                                               bool *arePlansKept) const {
     FarExt::SurfaceFaces const &base = _factory.GetFaces();
     if (beginFace < 0 || endFace < beginFace || endFace > base.GetNumFaces()) {
         return FarExt::internal::Failure(StatusCode::InvalidArgument,
@@ -400,7 +495,7 @@ CallStatus PatchStream<REAL>::checkRange(Index beginFace, Index endFace, bool *a
             "the forest has " + std::to_string(_forest->GetNumFaces()) + " trees, the mesh " +
                 std::to_string(base.GetNumFaces()) + " faces");
     }
-    if (_forest && &_forest->_faces.GetLevel() != &base.GetLevel()) {
+    if (_forest && &_forest->GetData().faces.GetLevel() != &base.GetLevel()) {
         return FarExt::internal::Failure(StatusCode::InvalidArgument,
                                          "the forest is that of another refiner");
     }
@@ -447,7 +542,7 @@ CallStatus PatchStream<REAL>::checkRange(Index beginFace, Index endFace, bool *a
 
 // Writes the levels, in a stream of levels.
 template <typename REAL>
-CallStatus PatchStream<REAL>::checkFace(Index face, internal::FaceLevels &levels) const {
+CallStatus PatchStream<REAL>::Data::checkFace(Index face, internal::FaceLevels &levels) const {
     CallStatus status = _factory.CheckFace(face);
     if (!status.IsOk()) {
         return status;
@@ -460,7 +555,7 @@ CallStatus PatchStream<REAL>::checkFace(Index face, internal::FaceLevels &levels
 }
 
 template <typename REAL>
-CallStatus PatchStream<REAL>::checkTree(Index face) const {
+CallStatus PatchStream<REAL>::Data::checkTree(Index face) const {
     return _forest->IsMatched(face)
                ? CallStatus()
                : CallStatus(StatusCode::InvalidArgument, ComponentType::Face, face,
@@ -470,8 +565,8 @@ CallStatus PatchStream<REAL>::checkTree(Index face) const {
 
 // Whether those of a face and its edges are some that a tessellation has.
 template <typename REAL>
-CallStatus PatchStream<REAL>::checkLevels(Index face,
-                                          internal::FaceLevels const &faceLevels) const {
+CallStatus PatchStream<REAL>::Data::checkLevels(Index face,
+                                                internal::FaceLevels const &faceLevels) const {
     std::vector<int> const &levels = faceLevels.levels;
     auto const isLevel = [](int level) {
         return 0 <= level && level <= LevelTessellation::kLastLevel;
@@ -496,8 +591,8 @@ CallStatus PatchStream<REAL>::checkLevels(Index face,
 // Has workers, each of which makeWorker() gives, make the patches of faces; false where one gave false.
 template <typename REAL>
 template <typename MAKE>
-bool PatchStream<REAL>::runWorkers(Index beginFace, Index endFace, bool arePlansKept,
-                                   MAKE const &makeWorker, CallStatus &status) const {
+bool PatchStream<REAL>::Data::runWorkers(Index beginFace, Index endFace, bool arePlansKept,
+                                         MAKE const &makeWorker, CallStatus &status) const {
     std::atomic<bool> isEnded(false);
     std::mutex mutex;
     Index const length = std::min(std::max((endFace - beginFace) / kNumRangesWanted, 1), kMaxRange);
@@ -539,9 +634,9 @@ bool PatchStream<REAL>::runWorkers(Index beginFace, Index endFace, bool arePlans
 }
 
 template <typename REAL>
-bool PatchStream<REAL>::Run(REAL const meshPoints[], PointDescriptor const &meshPointDesc,
-                            std::vector<Values> const &values, Index beginFace, Index endFace,
-                            Sink const &sink, CallStatus *status) const {
+bool PatchStream<REAL>::Data::Run(REAL const meshPoints[], PointDescriptor const &meshPointDesc,
+                                  std::vector<Values> const &values, Index beginFace, Index endFace,
+                                  Sink const &sink, CallStatus *status) const {
     bool arePlansKept = false;
     CallStatus result = checkRange(beginFace, endFace, &arePlansKept);
     for (Values const &further : values) {
@@ -561,7 +656,8 @@ bool PatchStream<REAL>::Run(REAL const meshPoints[], PointDescriptor const &mesh
 }
 
 template <typename REAL>
-bool PatchStream<REAL>::RunTessellations(TessellationSink const &sink, CallStatus *status) const {
+bool PatchStream<REAL>::Data::RunTessellations(TessellationSink const &sink,
+                                               CallStatus *status) const {
     Index const numFaces = _factory.GetNumFaces();
     bool arePlansKept = false;
     CallStatus result = checkRange(0, numFaces, &arePlansKept);
@@ -585,7 +681,7 @@ bool PatchStream<REAL>::RunTessellations(TessellationSink const &sink, CallStatu
 }
 
 template <typename REAL>
-auto PatchStream<REAL>::GetSectionPolygons(Index face) const -> SectionPolygons {
+auto PatchStream<REAL>::Data::GetSectionPolygons(Index face) const -> SectionPolygons {
     SectionPolygons result;
     internal::FaceLevels levels;
     getLevels(face, levels);
@@ -606,6 +702,68 @@ auto PatchStream<REAL>::GetSectionPolygons(Index face) const -> SectionPolygons 
             place.edge < 0 || place.end == 0 ? -1 : sections->CountPointsBefore(place));
     }
     return result;
+}
+
+template <typename REAL>
+PatchStream<REAL>::PatchStream(SurfaceFactory const &factory, PatchLevels levels,
+                               Options const &options)
+    : _data(std::make_shared<Data const>(factory, std::move(levels), nullptr, options)) {}
+
+template <typename REAL>
+PatchStream<REAL>::PatchStream(SurfaceFactory const &factory, CellForest const &forest,
+                               Options const &options)
+    : _data(std::make_shared<Data const>(factory, PatchLevels(0), &forest, options)) {}
+
+template <typename REAL>
+bool PatchStream<REAL>::Run(REAL const meshPoints[], PointDescriptor const &meshPointDesc,
+                            std::vector<Values> const &values, Index beginFace, Index endFace,
+                            Sink const &sink, CallStatus *status) const {
+    return _data->Run(meshPoints, meshPointDesc, values, beginFace, endFace, sink, status);
+}
+
+template <typename REAL>
+bool PatchStream<REAL>::RunTessellations(TessellationSink const &sink, CallStatus *status) const {
+    return _data->RunTessellations(sink, status);
+}
+
+template <typename REAL>
+int PatchStream<REAL>::GetNumSections(Index face) const {
+    return _data->GetNumSections(face);
+}
+
+template <typename REAL>
+LevelTessellation PatchStream<REAL>::MakeTessellation(Index face) const {
+    return _data->MakeTessellation(face);
+}
+
+template <typename REAL>
+LevelTessellation PatchStream<REAL>::MakeTessellation(Index face, int section) const {
+    return _data->MakeTessellation(face, section);
+}
+
+template <typename REAL>
+auto PatchStream<REAL>::GetSectionPolygons(Index face) const -> SectionPolygons {
+    return _data->GetSectionPolygons(face);
+}
+
+template <typename REAL>
+SurfaceFactory const &PatchStream<REAL>::GetFactory() const {
+    return _data->GetFactory();
+}
+
+template <typename REAL>
+PatchLevels const &PatchStream<REAL>::GetLevels() const {
+    return _data->GetLevels();
+}
+
+template <typename REAL>
+CellForest const *PatchStream<REAL>::GetForest() const {
+    return _data->GetForest();
+}
+
+template <typename REAL>
+auto PatchStream<REAL>::GetOptions() const -> Options const & {
+    return _data->GetOptions();
 }
 
 template class PatchStream<float>;

@@ -12,12 +12,6 @@
 
 namespace OpenSubdivHex::BfrExt {
 
-namespace internal {
-struct FaceLevels;
-class FaceSections;
-class PatchPlans;
-} // namespace internal
-
 /// \brief How fine the patches of a stream are: a level of refinement for the inside of each base face
 /// and one for each edge of the base mesh, 0 ... LevelTessellation::kLastLevel.
 ///
@@ -143,7 +137,7 @@ public:
         /// Patches with the same levels share a tessellation.  If not all tessellations fit, patches that share one are made
         /// in succession, so that few tessellations are made twice.
         ///
-        /// A thread has one patch, with its points, at a time.  Making a tessellation takes about 300 bytes a point: a face
+        /// A thread has one patch, and 4096 points of vertices.  Making a tessellation takes about 300 bytes a point: a face
         /// may take a fourth of the bytes that are set, or 3 megabytes if these are more (4 with derivatives).  Faces that
         /// take more come in sections.  A single cell is never cut: it has all points that finer edges of the face, or cells
         /// beside it, have on its sides.
@@ -180,6 +174,9 @@ public:
     /// Overload with default options.
     PatchStream(SurfaceFactory const &factory, CellForest const &forest)
         : PatchStream(factory, forest, Options()) {}
+    PatchStream(PatchStream const &) = default;
+    PatchStream &operator=(PatchStream const &) = default;
+    ~PatchStream() = default;
 
     /// \brief Hands the patches of all faces to a sink.
     ///
@@ -193,7 +190,7 @@ public:
     ///                       A failure on the way: Unsupported for a vertex without a limit stencil
     bool Run(REAL const meshPoints[], PointDescriptor const &meshPointDesc, Sink const &sink,
              FarExt::CallStatus *status = nullptr) const {
-        return Run(meshPoints, meshPointDesc, 0, _factory.GetNumFaces(), sink, status);
+        return Run(meshPoints, meshPointDesc, 0, GetFactory().GetNumFaces(), sink, status);
     }
     /// \brief Overload for faces \p beginFace ... \p endFace - 1: the share of a process.
     ///
@@ -243,38 +240,18 @@ public:
     SectionPolygons GetSectionPolygons(Index face) const;
 
     /// The factory that was given.
-    SurfaceFactory const &GetFactory() const { return _factory; }
+    SurfaceFactory const &GetFactory() const;
     /// The levels that were given; with a forest: 0.
-    PatchLevels const &GetLevels() const { return _levels; }
+    PatchLevels const &GetLevels() const;
     /// The forest that was given, or null.
-    CellForest const *GetForest() const { return _forest; }
+    CellForest const *GetForest() const;
     /// The options that were given.
-    Options const &GetOptions() const { return _options; }
+    Options const &GetOptions() const;
 
 private:
-    class TessellationFinder;
-    class Worker;
-    struct Batch;
+    class Data;
 
-    std::shared_ptr<internal::PatchPlans> makePlans() const;
-    FarExt::CallStatus checkRange(Index beginFace, Index endFace,
-                                  bool *arePlansKept = nullptr) const;
-    FarExt::CallStatus checkFace(Index face, internal::FaceLevels &levels) const;
-    FarExt::CallStatus checkLevels(Index face, internal::FaceLevels const &levels) const;
-    FarExt::CallStatus checkTree(Index face) const;
-    void getLevels(Index face, internal::FaceLevels &levels) const;
-    bool isCut(Index face, internal::FaceLevels const &levels) const;
-    std::unique_ptr<internal::FaceSections const> makeSections(Index face) const;
-    Index takeFaces(Index beginFace, Index endFace, Batch &batch) const;
-    template <typename MAKE>
-    bool runWorkers(Index beginFace, Index endFace, bool arePlansKept, MAKE const &makeWorker,
-                    FarExt::CallStatus &status) const;
-
-    SurfaceFactory const &_factory;
-    PatchLevels const _levels;
-    CellForest const *const _forest; // null: levels
-    Options const _options;
-    std::shared_ptr<internal::PatchPlans> _plans;
+    std::shared_ptr<Data const> _data; // never null: copied where it is moved
 };
 
 extern template class PatchStream<float>;

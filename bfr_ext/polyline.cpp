@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "cellTree.h"
+#include "polyline.h"
 
 #include <algorithm>
 

@@ -3,6 +3,8 @@
 
 #include "cell/baseType.h"
 #include "cell/cellGrid.h"
+#include "stream/boundsData.h"
+#include "stream/forestData.h"
 
 #include "far_ext/vtr/hierarchy.h"
 #include "far_ext/vtr/parallel.h"
@@ -460,19 +462,234 @@ private:
 
 } // namespace
 
-} // namespace internal
+/// The data of a View.
+struct ViewData {
+    Camera camera;
+    View::Options options;
+    ViewGeometry geometry; ///< of a valid one
+    bool isValid = false;
+};
 
-View::View(Camera const &camera, Options options) : _camera(camera), _options(options) {
-    auto const isNumber = [](double number) { return std::isfinite(number) && number >= 0; };
-    auto geometry = std::make_shared<internal::ViewGeometry>();
-    bool const hasAim = options.GetFlatness() > 0 || options.GetEdgeLength() > 0;
-    if (geometry->Set(_camera) && hasAim && isNumber(options.GetFlatness()) &&
-        isNumber(options.GetEdgeLength()) && isNumber(options.GetHysteresis()) &&
-        options.GetHysteresis() <= 1 && options.GetMaxLevel() >= 0 &&
-        options.GetMaxLevel() <= CellTree::kLastLevel) {
-        _geometry = std::move(geometry);
+namespace {
+
+// Refines a tree of one cell.
+void refineTree(ViewData const &view, CellTree &tree,
+                std::function<FaceToMeasure const &()> const &getBase, FaceMeasures &measures,
+                CellTree const *previous, std::vector<CellVisibility> *visibility) {
+    if (visibility) {
+        visibility->clear();
+    }
+    if (view.isValid) {
+        bool const hasPrevious = previous && previous->GetFaceShape() == tree.GetFaceShape();
+        TreeMaker(view.geometry, view.options, getBase, measures, hasPrevious ? previous : nullptr,
+                  tree, visibility)
+            .Make();
+    }
+    if (visibility) {
+        visibility->resize(std::size_t(tree.GetNumCells()));
     }
 }
+
+// The surface of one face after the other, with its control points.
+template <typename REAL>
+class FaceSurface {
+public:
+    FaceSurface(SurfaceFactory const &factory, REAL const *meshPoints, std::ptrdiff_t stride)
+        : _factory(factory), _meshPoints(meshPoints), _stride(stride) {}
+
+    // Whether there is one.
+    bool Init(Far::Index face) {
+        if (face != _face) {
+            _face = face;
+            _surface.Clear();
+            if (_factory.TryInit(face, FarExt::Interpolation::Vertex, -1, _surface).IsOk()) {
+                auto const numPoints = std::size_t(_surface.GetNumControlPoints());
+                _points.resize(3 * numPoints);
+                _surface.GatherControlPoints(_meshPoints, {3, int(_stride)}, _points.data(), 3);
+                _base.Set(_surface.GetFace().type, _points.data(), 3, numPoints);
+            }
+        }
+        return _surface.IsValid();
+    }
+    Surface<REAL> const &Get() const { return _surface; }
+    REAL const *GetControlPoints() const { return _points.data(); }
+    FaceToMeasure const &GetBase() const { return _base; }
+
+private:
+    SurfaceFactory const &_factory;
+    REAL const *const _meshPoints;
+    std::ptrdiff_t const _stride;
+    Far::Index _face = Far::INDEX_INVALID;
+    Surface<REAL> _surface;
+    std::vector<REAL> _points;
+    FaceToMeasure _base;
+};
+
+// View::MakeEdge().
+template <typename REAL>
+Polyline makeEdge(ViewData const &view, Surface<REAL> const &surface, int edge,
+                  REAL const *controlPoints, std::ptrdiff_t stride, Polyline const *previous) {
+    if (!view.isValid) {
+        return Polyline();
+    }
+    CellType::BorderItem const &item =
+        surface.GetFace().type->GetBorderItem(surface.GetFace().GetTurns(), std::size_t(edge));
+    std::vector<double> points;
+    for (int const point : item.points) {
+        REAL const *const from = controlPoints + std::ptrdiff_t(point) * stride;
+        points.insert(points.end(), from, from + 3);
+    }
+    CellValues values;
+    values.SetBase(*item.type, points.data(), 3);
+    Polyline last; // in the direction of the item
+    if (previous) {
+        last = item.isReversed ? previous->GetReversed() : *previous;
+    }
+    Polyline polyline;
+    Polyline::FromPlaces(EdgeMaker(view.geometry, view.options, last).Make(values), &polyline);
+    return item.isReversed ? polyline.GetReversed() : polyline;
+}
+
+// Counts the cells of a forest that are not refined.
+View::Counts countCells(ForestData const &forest, int maxLevel,
+                        std::vector<std::vector<CellVisibility>> const &visibility) {
+    View::Counts counts;
+    counts.cellsByLevel.assign(std::size_t(maxLevel) + 1, 0);
+    for (std::size_t face = 0; face < visibility.size(); ++face) {
+        CellTree const &tree = forest.trees[face];
+        std::vector<CellVisibility> const &found = visibility[face];
+        for (std::size_t cell = 0; cell < found.size(); ++cell) {
+            if (!tree.IsRefined(int(cell))) {
+                ++counts.cellsByLevel[std::size_t(tree.GetLevel(int(cell)))];
+                counts.outside += found[cell] == CellVisibility::Outside;
+                counts.backFacing += found[cell] == CellVisibility::BackFacing;
+            }
+        }
+    }
+    return counts;
+}
+
+// View::MakeForest().
+template <typename REAL>
+CellForest makeForest(ViewData const &view, SurfaceFactory const &factory, BoundsData *bounds,
+                      REAL const *meshPoints, std::ptrdiff_t stride, CellForest const *previous,
+                      View::Counts *counts, FarExt::CallStatus *status) {
+    using Index = Far::Index;
+    FarExt::SurfaceFaces const &faces = factory.GetFaces();
+    // Diagonals between surface faces are infinitely sharp.
+    auto const isInfSharp = [&](Index edge) {
+        return edge >= factory.GetLevel().GetNumEdges() || factory.GetLevel().IsEdgeInfSharp(edge);
+    };
+    CellForest result(factory.GetMesh());
+    ForestData &forest = result.GetData();
+    forest.plans = bounds ? bounds->plans : nullptr;
+    ForestData const *const last = previous && previous->GetNumFaces() == forest.GetNumFaces()
+                                       ? &previous->GetData()
+                                       : nullptr;
+    bool const hasLastEdges = last && last->edges.size() == forest.edges.size();
+    std::vector<std::vector<CellVisibility>> visibility(counts ? std::size_t(forest.GetNumFaces())
+                                                               : 0);
+    // A tree grows in the memory of the last one, and is kept in no more than it takes.
+    struct State {
+        FaceSurface<REAL> surface;
+        FaceMeasures measures;
+        CellTree tree;
+    };
+    constexpr int kTriangle = 3;
+    std::atomic<Index> firstWithout = forest.GetNumFaces(); // without a surface
+    constexpr Index kFacesOfRange = 16;
+    FarExt::internal::ParallelForRange(
+        forest.GetNumFaces(),
+        [&] {
+            return State{{factory, meshPoints, stride}, {}, CellTree(kTriangle)};
+        },
+        [&](State &state, Index begin, Index end) {
+            for (Index face = begin; face < end; ++face) {
+                state.measures.Clear();
+                FaceMeasures &measures = bounds ? bounds->faces[std::size_t(face)] : state.measures;
+                if (measures.cells.empty() && !state.surface.Init(face)) {
+                    Index first = firstWithout;
+                    while (!faces.IsHole(face) && face < first &&
+                           !firstWithout.compare_exchange_weak(first, face)) {
+                    }
+                    continue;
+                }
+                std::size_t const memory = measures.GetMemory();
+                auto const getBase = [&]() -> FaceToMeasure const & {
+                    state.surface.Init(face);
+                    return state.surface.GetBase();
+                };
+                CellTree &tree = forest.trees[std::size_t(face)];
+                state.tree = tree;
+                refineTree(view, state.tree, std::cref(getBase), measures,
+                           last ? &last->GetTree(face) : nullptr,
+                           counts ? &visibility[std::size_t(face)] : nullptr);
+                if (state.tree.IsRefined(0)) {
+                    tree = state.tree;
+                }
+                if (bounds) {
+                    bounds->Trim(face, memory);
+                }
+                for (int local = 0; local < tree.GetFaceSize(); ++local) {
+                    auto const [edge, isReversed] = faces.GetEdge(face, local);
+                    // The first of its faces that has a surface makes an edge, since holes have none.
+                    if (!isInfSharp(edge) ||
+                        (isReversed && factory.FaceHasLimitSurface(faces.GetSide(edge, 0).face)) ||
+                        !state.surface.Init(face)) {
+                        continue;
+                    }
+                    Polyline lastEdge; // empty where there is none
+                    if (hasLastEdges) {
+                        Polyline const &ofEdge = last->edges[std::size_t(edge)];
+                        lastEdge = isReversed ? ofEdge.GetReversed() : ofEdge;
+                    }
+                    Polyline made = makeEdge(view, state.surface.Get(), local,
+                                             state.surface.GetControlPoints(), 3, &lastEdge);
+                    forest.edges[std::size_t(edge)] =
+                        isReversed ? made.GetReversed() : std::move(made);
+                }
+            }
+        },
+        kFacesOfRange);
+    result.MatchEdges();
+    if (status && !view.isValid) {
+        *status = FarExt::internal::Failure(
+            FarExt::StatusCode::InvalidArgument,
+            "the view is invalid: its camera has no picture, or an option is out of range");
+    } else if (status) {
+        Surface<REAL> none;
+        *status = firstWithout < forest.GetNumFaces()
+                      ? factory.TryInit(firstWithout, FarExt::Interpolation::Vertex, -1, none)
+                      : FarExt::CallStatus();
+    }
+    if (counts) {
+        *counts = countCells(forest, view.isValid ? view.options.GetMaxLevel() : 0, visibility);
+    }
+    return result;
+}
+
+} // namespace
+
+} // namespace internal
+
+View::View(Camera const &camera, Options options) {
+    auto const isNumber = [](double number) { return std::isfinite(number) && number >= 0; };
+    auto data = std::make_shared<internal::ViewData>();
+    data->camera = camera;
+    data->options = options;
+    bool const hasAim = options.GetFlatness() > 0 || options.GetEdgeLength() > 0;
+    data->isValid = data->geometry.Set(data->camera) && hasAim && isNumber(options.GetFlatness()) &&
+                    isNumber(options.GetEdgeLength()) && isNumber(options.GetHysteresis()) &&
+                    options.GetHysteresis() <= 1 && options.GetMaxLevel() >= 0 &&
+                    options.GetMaxLevel() <= CellTree::kLastLevel;
+    _data = std::move(data);
+}
+
+bool View::IsValid() const { return _data->isValid; }
+
+Camera const &View::GetCamera() const { return _data->camera; }
+
+View::Options const &View::GetOptions() const { return _data->options; }
 
 template <typename REAL>
 CellTree View::MakeTree(Surface<REAL> const &surface, REAL const controlPoints[],
@@ -483,53 +700,17 @@ CellTree View::MakeTree(Surface<REAL> const &surface, REAL const controlPoints[]
     base.Set(surface.GetFace().type, controlPoints, pointDesc.stride,
              std::size_t(surface.GetNumControlPoints()));
     CellTree tree(surface.GetFaceShape());
-    refine(
-        tree, [&]() -> internal::FaceToMeasure const & { return base; }, measures, previous,
+    internal::refineTree(
+        *_data, tree, [&]() -> internal::FaceToMeasure const & { return base; }, measures, previous,
         visibility);
     return tree;
-}
-
-// The tree has one cell before.
-void View::refine(CellTree &tree, std::function<internal::FaceToMeasure const &()> const &getBase,
-                  internal::FaceMeasures &measures, CellTree const *previous,
-                  std::vector<CellVisibility> *visibility) const {
-    if (visibility) {
-        visibility->clear();
-    }
-    if (IsValid()) {
-        bool const hasPrevious = previous && previous->GetFaceShape() == tree.GetFaceShape();
-        internal::TreeMaker(*_geometry, _options, getBase, measures,
-                            hasPrevious ? previous : nullptr, tree, visibility)
-            .Make();
-    }
-    if (visibility) {
-        visibility->resize(std::size_t(tree.GetNumCells()));
-    }
 }
 
 template <typename REAL>
 Polyline View::MakeEdge(Surface<REAL> const &surface, int edge, REAL const controlPoints[],
                         typename Surface<REAL>::PointDescriptor const &pointDesc,
                         Polyline const *previous) const {
-    if (!IsValid()) {
-        return Polyline();
-    }
-    internal::CellType::BorderItem const &item =
-        surface.GetFace().type->GetBorderItem(surface.GetFace().GetTurns(), std::size_t(edge));
-    std::vector<double> points;
-    for (int const point : item.points) {
-        REAL const *const from = controlPoints + std::ptrdiff_t(point) * pointDesc.stride;
-        points.insert(points.end(), from, from + 3);
-    }
-    internal::CellValues values;
-    values.SetBase(*item.type, points.data(), 3);
-    Polyline last; // in the direction of the item
-    if (previous) {
-        last = item.isReversed ? previous->GetReversed() : *previous;
-    }
-    Polyline polyline;
-    Polyline::FromPlaces(internal::EdgeMaker(*_geometry, _options, last).Make(values), &polyline);
-    return item.isReversed ? polyline.GetReversed() : polyline;
+    return internal::makeEdge(*_data, surface, edge, controlPoints, pointDesc.stride, previous);
 }
 
 template <typename REAL>
@@ -558,7 +739,8 @@ CellForest View::MakeForest(SurfaceFactory const &factory, REAL const meshPoints
                             typename Surface<REAL>::PointDescriptor const &pointDesc,
                             CellForest const *previous, Counts *counts,
                             FarExt::CallStatus *status) const {
-    return makeForest(factory, nullptr, meshPoints, pointDesc.stride, previous, counts, status);
+    return internal::makeForest(*_data, factory, nullptr, meshPoints, pointDesc.stride, previous,
+                                counts, status);
 }
 
 template <typename REAL>
@@ -566,143 +748,10 @@ CellForest View::MakeForest(ViewBounds &bounds, REAL const meshPoints[],
                             typename Surface<REAL>::PointDescriptor const &pointDesc,
                             CellForest const *previous, Counts *counts,
                             FarExt::CallStatus *status) const {
-    bounds.setPoints(meshPoints, pointDesc.stride);
-    return makeForest(bounds.GetFactory(), &bounds, meshPoints, pointDesc.stride, previous, counts,
-                      status);
-}
-
-// The surface of one face after the other, with its control points.
-template <typename REAL>
-class View::FaceSurface {
-public:
-    FaceSurface(SurfaceFactory const &factory, REAL const *meshPoints, std::ptrdiff_t stride)
-        : _factory(factory), _meshPoints(meshPoints), _stride(stride) {}
-
-    // Whether there is one.
-    bool Init(Index face) {
-        if (face != _face) {
-            _face = face;
-            _surface.Clear();
-            if (_factory.TryInit(face, FarExt::Interpolation::Vertex, -1, _surface).IsOk()) {
-                auto const numPoints = std::size_t(_surface.GetNumControlPoints());
-                _points.resize(3 * numPoints);
-                _surface.GatherControlPoints(_meshPoints, {3, int(_stride)}, _points.data(), 3);
-                _base.Set(_surface.GetFace().type, _points.data(), 3, numPoints);
-            }
-        }
-        return _surface.IsValid();
-    }
-    Surface<REAL> const &Get() const { return _surface; }
-    REAL const *GetControlPoints() const { return _points.data(); }
-    internal::FaceToMeasure const &GetBase() const { return _base; }
-
-private:
-    SurfaceFactory const &_factory;
-    REAL const *const _meshPoints;
-    std::ptrdiff_t const _stride;
-    Index _face = Far::INDEX_INVALID;
-    Surface<REAL> _surface;
-    std::vector<REAL> _points;
-    internal::FaceToMeasure _base;
-};
-
-template <typename REAL>
-CellForest View::makeForest(SurfaceFactory const &factory, ViewBounds *bounds,
-                            REAL const *meshPoints, std::ptrdiff_t stride,
-                            CellForest const *previous, Counts *counts,
-                            FarExt::CallStatus *status) const {
-    FarExt::SurfaceFaces const &faces = factory.GetFaces();
-    // Diagonals between surface faces are infinitely sharp.
-    auto const isInfSharp = [&](Index edge) {
-        return edge >= factory.GetLevel().GetNumEdges() || factory.GetLevel().IsEdgeInfSharp(edge);
-    };
-    CellForest forest(factory.GetMesh());
-    forest._plans = bounds ? bounds->_plans : nullptr;
-    bool const hasPrevious = previous && previous->GetNumFaces() == forest.GetNumFaces();
-    bool const hasPreviousEdges = hasPrevious && previous->_edges.size() == forest._edges.size();
-    std::vector<std::vector<CellVisibility>> visibility(counts ? std::size_t(forest.GetNumFaces())
-                                                               : 0);
-    struct State {
-        FaceSurface<REAL> surface;
-        internal::FaceMeasures measures;
-    };
-    std::atomic<Index> firstWithout = forest.GetNumFaces(); // without a surface
-    constexpr Index kFacesOfRange = 16;
-    FarExt::internal::ParallelForRange(
-        forest.GetNumFaces(),
-        [&] {
-            return State{{factory, meshPoints, stride}, {}};
-        },
-        [&](State &state, Index begin, Index end) {
-            for (Index face = begin; face < end; ++face) {
-                state.measures.Clear();
-                internal::FaceMeasures &measures =
-                    bounds ? bounds->_measures->faces[std::size_t(face)] : state.measures;
-                if (measures.cells.empty() && !state.surface.Init(face)) {
-                    Index first = firstWithout;
-                    while (!faces.IsHole(face) && face < first &&
-                           !firstWithout.compare_exchange_weak(first, face)) {
-                    }
-                    continue;
-                }
-                std::size_t const memory = measures.GetMemory();
-                CellTree const *const last = hasPrevious ? &previous->GetTree(face) : nullptr;
-                auto const getBase = [&]() -> internal::FaceToMeasure const & {
-                    state.surface.Init(face);
-                    return state.surface.GetBase();
-                };
-                refine(forest._trees[std::size_t(face)], std::cref(getBase), measures, last,
-                       counts ? &visibility[std::size_t(face)] : nullptr);
-                if (bounds) {
-                    bounds->trim(face, memory);
-                }
-                for (int local = 0; local < faces.GetShape(face).size; ++local) {
-                    auto const [edge, isReversed] = faces.GetEdge(face, local);
-                    // The first of its faces that has a surface makes an edge, since holes have none.
-                    if (!isInfSharp(edge) ||
-                        (isReversed && factory.FaceHasLimitSurface(faces.GetSide(edge, 0).face)) ||
-                        !state.surface.Init(face)) {
-                        continue;
-                    }
-                    Polyline lastEdge; // empty where there is none
-                    if (hasPreviousEdges) {
-                        Polyline const &ofEdge = previous->_edges[std::size_t(edge)];
-                        lastEdge = isReversed ? ofEdge.GetReversed() : ofEdge;
-                    }
-                    Polyline const made = MakeEdge(state.surface.Get(), local,
-                                                   state.surface.GetControlPoints(), 3, &lastEdge);
-                    forest.SetEdge(edge, isReversed ? made.GetReversed() : made);
-                }
-            }
-        },
-        kFacesOfRange);
-    forest.MatchEdges();
-    if (status && !IsValid()) {
-        *status = FarExt::internal::Failure(
-            FarExt::StatusCode::InvalidArgument,
-            "the view is invalid: its camera has no picture, or an option is out of range");
-    } else if (status) {
-        Surface<REAL> none;
-        *status = firstWithout < forest.GetNumFaces()
-                      ? factory.TryInit(firstWithout, FarExt::Interpolation::Vertex, -1, none)
-                      : FarExt::CallStatus();
-    }
-    if (counts) {
-        *counts = Counts();
-        counts->cellsByLevel.assign(IsValid() ? std::size_t(_options.GetMaxLevel()) + 1 : 1, 0);
-        for (Index face = 0; face < forest.GetNumFaces(); ++face) {
-            CellTree const &tree = forest.GetTree(face);
-            std::vector<CellVisibility> const &found = visibility[std::size_t(face)];
-            for (std::size_t cell = 0; cell < found.size(); ++cell) {
-                if (!tree.IsRefined(int(cell))) {
-                    ++counts->cellsByLevel[std::size_t(tree.GetLevel(int(cell)))];
-                    counts->outside += found[cell] == CellVisibility::Outside;
-                    counts->backFacing += found[cell] == CellVisibility::BackFacing;
-                }
-            }
-        }
-    }
-    return forest;
+    internal::BoundsData &data = bounds.GetData();
+    data.SetPoints(meshPoints, pointDesc.stride);
+    return internal::makeForest(*_data, data.factory, &data, meshPoints, pointDesc.stride, previous,
+                                counts, status);
 }
 
 template CellTree View::MakeTree(Surface<float> const &, float const[],

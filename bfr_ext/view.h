@@ -2,33 +2,19 @@
 #ifndef OPENSUBDIVHEX_BFR_EXT_VIEW_H
 #define OPENSUBDIVHEX_BFR_EXT_VIEW_H
 
+#include "camera.h"
 #include "cellForest.h"
 #include "surfaceFactory.h"
 #include "viewBounds.h"
 
-#include <functional>
 #include <memory>
 #include <vector>
 
 namespace OpenSubdivHex::BfrExt {
 
 namespace internal {
-class FaceToMeasure;
-class ViewGeometry;
-struct FaceMeasures;
-} // namespace internal
-
-/// \brief A pinhole camera, as in glTF and USD.
-struct Camera {
-    double eye[3] = {0, 0, 1};    ///< where it is
-    double target[3] = {0, 0, 0}; ///< what is in the middle of the picture
-    /// A direction that is upright in the picture.  Where the camera looks along it, -z takes its
-    /// place, or y for a look more along z than along y: so a look down has x to the right.
-    double up[3] = {0, 1, 0};
-    double fieldOfView = 40; ///< degrees, of the height of the picture; between 0 and 180
-    int width = 1280;        ///< pixels
-    int height = 720;        ///< pixels
-};
+struct ViewData;
+}
 
 /// The visibility of a cell in a view.
 enum class CellVisibility : unsigned char {
@@ -141,13 +127,16 @@ public:
     /// \param camera   the camera
     /// \param options  how fine cells become
     explicit View(Camera const &camera, Options options = Options());
+    View(View const &) = default;
+    View &operator=(View const &) = default;
+    ~View() = default;
 
     /// Whether the arguments were as they have to be.
-    bool IsValid() const { return _geometry != nullptr; }
+    bool IsValid() const;
     /// The camera, with what is up in its picture.
-    Camera const &GetCamera() const { return _camera; }
+    Camera const &GetCamera() const;
     /// The options.
-    Options const &GetOptions() const { return _options; }
+    Options const &GetOptions() const;
 
     /// \brief Makes the tree of a face.
     ///
@@ -220,20 +209,7 @@ public:
                           FarExt::CallStatus *status = nullptr) const;
 
 private:
-    template <typename REAL>
-    class FaceSurface;
-
-    void refine(CellTree &tree, std::function<internal::FaceToMeasure const &()> const &getBase,
-                internal::FaceMeasures &measures, CellTree const *previous,
-                std::vector<CellVisibility> *visibility) const;
-    template <typename REAL>
-    CellForest makeForest(SurfaceFactory const &factory, ViewBounds *bounds, REAL const *meshPoints,
-                          std::ptrdiff_t stride, CellForest const *previous, Counts *counts,
-                          FarExt::CallStatus *status) const;
-
-    Camera _camera;
-    Options _options;
-    std::shared_ptr<internal::ViewGeometry const> _geometry; // null of an invalid one
+    std::shared_ptr<internal::ViewData const> _data; // never null: copied where it is moved
 };
 
 } // namespace OpenSubdivHex::BfrExt

@@ -6,16 +6,12 @@
 
 #include <cstddef>
 #include <memory>
-#include <vector>
 
 namespace OpenSubdivHex::BfrExt {
 
-class View;
-
 namespace internal {
-class KeptPlans;
-struct MeshMeasures;
-} // namespace internal
+struct BoundsData;
+}
 
 /// \brief Keeps how flat the cells of a mesh are, which no camera changes, for the next views of the mesh.
 ///
@@ -68,27 +64,19 @@ public:
     ViewBounds &operator=(ViewBounds const &) = delete;
 
     /// The factory that was given.
-    SurfaceFactory const &GetFactory() const { return _factory; }
+    SurfaceFactory const &GetFactory() const;
     /// The options.
-    Options const &GetOptions() const { return _options; }
+    Options const &GetOptions() const;
     /// Memory that cells take, in bytes.
     std::size_t GetMemory() const;
     /// Forgets all.
     void Clear();
 
+    /// For the library's own use.
+    internal::BoundsData &GetData() { return *_data; }
+
 private:
-    friend class View;
-
-    template <typename REAL>
-    void setPoints(REAL const *meshPoints, std::ptrdiff_t stride);
-    void forget(std::vector<char> const &isChanged);
-    void trim(Index face, std::size_t memoryBefore);
-
-    SurfaceFactory const &_factory;
-    Options const _options;
-    std::vector<double> _points; // the positions, once there are some
-    std::unique_ptr<internal::MeshMeasures> _measures;
-    std::shared_ptr<internal::KeptPlans> _plans; // of streams of the forests
+    std::unique_ptr<internal::BoundsData> _data;
 };
 
 } // namespace OpenSubdivHex::BfrExt

@@ -2,6 +2,8 @@
 #include "cellGrid.h"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <map>
 
 namespace OpenSubdivHex::BfrExt::internal {
@@ -76,16 +78,48 @@ void CellGrid::Sample(CellValues const &cell, std::vector<double> &samples) {
 
 void CellGrid::Sample(CellType const &type, double const *controlPoints,
                       std::vector<double> &samples) {
-    samples.resize(3 * _places.GetSize());
-    _evaluator.Evaluate(type, getPlan(type.IsInLattice()), 3, controlPoints, 3, samples.data(), 3);
+    sampleBase(controlPoints, type.GetNumPoints(), samples, [&] {
+        _baseEvaluator.Evaluate(type, getPlan(type.IsInLattice()), 3, _basePoints.data(), 3,
+                                _baseSamples.data(), 3);
+    });
 }
 
 void CellGrid::Sample(PlainFaceType const &type, double const *controlPoints,
                       std::vector<double> &samples) {
-    samples.resize(3 * _places.GetSize());
-    _ringValues.Set(type.GetRings().GetRings(), std::size_t(type.GetNumPoints()), nullptr,
-                    controlPoints, 3, 3);
-    _evaluator.Evaluate(type, _ringValues, getPlan(false), samples.data(), 3);
+    sampleBase(controlPoints, type.GetNumPoints(), samples, [&] {
+        _ringValues.Set(type.GetRings().GetRings(), std::size_t(type.GetNumPoints()), nullptr,
+                        _basePoints.data(), 3, 3);
+        _baseEvaluator.Evaluate(type, _ringValues, getPlan(false), _baseSamples.data(), 3);
+    });
+}
+
+// Has evaluate() make the samples from the points in single precision.
+template <typename FUNCTION>
+void CellGrid::sampleBase(double const *controlPoints, int numPoints, std::vector<double> &samples,
+                          FUNCTION const &evaluate) {
+    Vector3 const origin = ToVector3(controlPoints);
+    std::size_t const numNumbers = 3 * std::size_t(numPoints);
+    double size = std::numeric_limits<double>::min();
+    for (std::size_t i = 0; i < numNumbers; i += 3) {
+        for (std::size_t k = 0; k < 3; ++k) {
+            size = std::max(size, std::abs(controlPoints[i + k] - origin[k]));
+        }
+    }
+    double const scale = 1 / size;
+    _basePoints.resize(numNumbers);
+    for (std::size_t i = 0; i < numNumbers; i += 3) {
+        for (std::size_t k = 0; k < 3; ++k) {
+            _basePoints[i + k] = float((controlPoints[i + k] - origin[k]) * scale);
+        }
+    }
+    _baseSamples.resize(3 * _places.GetSize());
+    evaluate();
+    samples.resize(_baseSamples.size());
+    for (std::size_t i = 0; i < samples.size(); i += 3) {
+        for (std::size_t k = 0; k < 3; ++k) {
+            samples[i + k] = origin[k] + size * double(_baseSamples[i + k]);
+        }
+    }
 }
 
 CellPlan const &CellGrid::getPlan(bool isInLattice) {

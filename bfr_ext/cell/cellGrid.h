@@ -14,8 +14,9 @@ namespace OpenSubdivHex::BfrExt::internal {
 /// \brief The cells up to two steps from a cell on, and where their corners are among the places of its LeafPlaces: from
 /// the surface at these places, the *samples*, a cell and its children are measured.
 ///
-/// Samples of a cell are made as the places of a leaf of tessellations are, those of a base face as its tessellation of
-/// level 2 is.
+/// Samples of a cell are made as the places of a leaf of tessellations are.  Those of a base face are made as its tessellation
+/// of level 2 is, in single precision, which the cells up to two steps on can do with: relative to its first control point
+/// and its size.
 ///
 /// One thread uses it at a time.
 class CellGrid {
@@ -66,6 +67,9 @@ private:
         std::array<Pair, 4> corners; // of half cells
     };
 
+    template <typename FUNCTION>
+    void sampleBase(double const *controlPoints, int numPoints, std::vector<double> &samples,
+                    FUNCTION const &evaluate);
     int add(Shape const &shape, int numSteps);
     Shape getChild(Shape const &shape, int child) const;
     CellPlan const &getPlan(bool isInLattice);
@@ -77,8 +81,11 @@ private:
     std::vector<Cell> _cells;
     CellPlan const _plan;
     std::unique_ptr<CellPlan const> _plansOfBase[2];
-    RingValues<double> _ringValues;
     PatchEvaluator<double> _evaluator;
+    PatchEvaluator<float> _baseEvaluator;
+    RingValues<float> _ringValues;
+    std::vector<float> _basePoints;
+    std::vector<float> _baseSamples;
 };
 
 } // namespace OpenSubdivHex::BfrExt::internal

@@ -5,7 +5,6 @@
 #include "vector3.h"
 
 #include <algorithm>
-#include <atomic>
 #include <cstddef>
 #include <limits>
 #include <vector>
@@ -117,14 +116,6 @@ struct FaceMeasures {
 
     std::vector<CellMeasures> cells;
     std::vector<CellFacing> facings;
-};
-
-/// The measures of all base faces of a mesh.  Several threads may work at different faces.
-struct MeshMeasures {
-    explicit MeshMeasures(int numFaces) : faces(std::size_t(numFaces)) {}
-
-    std::vector<FaceMeasures> faces;
-    std::atomic<std::size_t> memory{0}; ///< that they take, in bytes
 };
 
 } // namespace OpenSubdivHex::BfrExt::internal

@@ -94,6 +94,12 @@ void FaceEvaluator<REAL>::useBorder(FUNCTION const &function) const {
 }
 
 template <typename REAL>
+void FaceEvaluator<REAL>::EvaluateVertex(int vert, REAL *result) const {
+    useBorder(
+        [&](BorderEvaluator<REAL> &border) { border.EvaluateVertex(std::size_t(vert), result); });
+}
+
+template <typename REAL>
 void FaceEvaluator<REAL>::evaluateLeaves(TessellationData const &tessellation, REAL *const *results,
                                          PointDescriptor const &resultDesc) const {
     // Its memory is kept for the next face.

@@ -43,6 +43,8 @@ public:
     /// \param results  the points; by u, by v; by u twice, by u and v, by v twice; null from some kind on
     void Evaluate(TessellationData const &tessellation, REAL *const results[6],
                   PointDescriptor const &resultDesc) const;
+    /// Writes the point of a vertex, as it is in all tessellations.
+    void EvaluateVertex(int vert, REAL *result) const;
     /// \brief Evaluates a tessellation of Bfr of a face of this size.
     ///
     /// \param results  the points; by u, by v; both null where only points are wanted

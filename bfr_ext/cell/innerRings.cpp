@@ -251,13 +251,12 @@ void InnerRings::apply(Ring const &ring, Center const &center, std::size_t padde
 }
 
 template <typename REAL>
-void InnerRings::Apply(std::vector<Ring> const &rings, std::size_t paddedSize, REAL *points) const {
-    for (std::size_t ring = 0; ring < rings.size(); ++ring) {
-        if (paddedSize == StepMatrix::kPadding) {
-            apply<StepMatrix::kPadding>(rings[ring], _rings[ring], paddedSize, points);
-        } else {
-            apply<0>(rings[ring], _rings[ring], paddedSize, points);
-        }
+void InnerRings::Apply(std::vector<Ring> const &rings, std::size_t ring, std::size_t paddedSize,
+                       REAL *points) const {
+    if (paddedSize == StepMatrix::kPadding) {
+        apply<StepMatrix::kPadding>(rings[ring], _rings[ring], paddedSize, points);
+    } else {
+        apply<0>(rings[ring], _rings[ring], paddedSize, points);
     }
 }
 
@@ -292,8 +291,9 @@ void InnerRings::CopyCenter(Ring const &ring, int firstFace, REAL const *points,
     std::copy_n(block + kCenter * paddedSize, paddedSize, result);
 }
 
-template void InnerRings::Apply(std::vector<Ring> const &, std::size_t, float *) const;
-template void InnerRings::Apply(std::vector<Ring> const &, std::size_t, double *) const;
+template void InnerRings::Apply(std::vector<Ring> const &, std::size_t, std::size_t, float *) const;
+template void InnerRings::Apply(std::vector<Ring> const &, std::size_t, std::size_t,
+                                double *) const;
 template void InnerRings::CopyCenter(Ring const &, int, float const *, std::size_t, float *);
 template void InnerRings::CopyCenter(Ring const &, int, double const *, std::size_t, double *);
 

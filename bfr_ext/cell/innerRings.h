@@ -72,13 +72,14 @@ public:
     ///          plain base faces have none
     bool Init(PatchCorners const &ofPatch, std::vector<int> const &corners, InnerMasks &masks);
 
-    /// \brief Writes their points behind those of the first step, where the vertices of the rings from all
-    /// faces on are there already.
+    /// \brief Writes the points of a ring behind those of the first step, where the vertices of the ring from all faces on
+    /// are there already.
     ///
     /// \param rings       of the same corners
     /// \param paddedSize  numbers of a point, a multiple of StepMatrix::kPadding
     template <typename REAL>
-    void Apply(std::vector<Ring> const &rings, std::size_t paddedSize, REAL *points) const;
+    void Apply(std::vector<Ring> const &rings, std::size_t ring, std::size_t paddedSize,
+               REAL *points) const;
     /// Writes the vertex of a ring, from any face on, as it is among \p points, those of all rings.
     template <typename REAL>
     static void CopyCenter(Ring const &ring, int firstFace, REAL const *points,

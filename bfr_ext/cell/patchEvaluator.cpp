@@ -210,7 +210,7 @@ void PatchEvaluator<REAL>::descendToChildren(CellType const &type, CellPlan cons
 }
 
 template <typename REAL>
-void PatchEvaluator<REAL>::Evaluate(PlainFaceType const &type, RingValues<REAL> const &values,
+void PatchEvaluator<REAL>::Evaluate(PlainFaceType const &type, RingValues<REAL> &values,
                                     CellPlan const &plan, REAL *results,
                                     std::ptrdiff_t resultStride) {
     _results = results;
@@ -219,9 +219,9 @@ void PatchEvaluator<REAL>::Evaluate(PlainFaceType const &type, RingValues<REAL> 
 }
 
 template <typename REAL>
-void PatchEvaluator<REAL>::EvaluateDerivatives(PlainFaceType const &type,
-                                               RingValues<REAL> const &values, CellPlan const &plan,
-                                               REAL *du, REAL *dv, std::ptrdiff_t resultStride) {
+void PatchEvaluator<REAL>::EvaluateDerivatives(PlainFaceType const &type, RingValues<REAL> &values,
+                                               CellPlan const &plan, REAL *du, REAL *dv,
+                                               std::ptrdiff_t resultStride) {
     _results = nullptr;
     _derivatives[0] = du;
     _derivatives[1] = dv;
@@ -230,12 +230,16 @@ void PatchEvaluator<REAL>::EvaluateDerivatives(PlainFaceType const &type,
 }
 
 template <typename REAL>
-void PatchEvaluator<REAL>::evaluate(PlainFaceType const &type, RingValues<REAL> const &values,
+void PatchEvaluator<REAL>::evaluate(PlainFaceType const &type, RingValues<REAL> &values,
                                     CellPlan const &plan) {
     _size = values.GetSize();
     _paddedSize = values.GetPaddedSize();
     FaceRings const &face = type.GetRings();
-    evaluateCorners(face, plan[0], values.GetPoints());
+    if (plan[0].corners.empty() && plan[0].children.empty()) {
+        return; // no ring is needed
+    }
+    REAL const *const ofRings = values.GetPoints();
+    evaluateCorners(face, plan[0], ofRings);
     for (std::size_t const next : plan[0].children) {
         CellPlan::Node const &child = plan[next];
         RingCell const &cell = face.GetChild(child.child);
@@ -243,17 +247,17 @@ void PatchEvaluator<REAL>::evaluate(PlainFaceType const &type, RingValues<REAL> 
         _indices.resize(columns.size());
         face.FindChildIndices(child.child, _indices.data());
         if (child.leaf) {
-            evaluateLeaf(cell.GetType(), &cell, child, values.GetPoints(),
-                         std::ptrdiff_t(_paddedSize), _indices.data());
+            evaluateLeaf(cell.GetType(), &cell, child, ofRings, std::ptrdiff_t(_paddedSize),
+                         _indices.data());
             continue;
         }
         if (cell.IsInner()) {
-            evaluateCorners(cell, child, values.GetPoints());
+            evaluateCorners(cell, child, ofRings);
         }
         std::vector<REAL> &points = getPoints(cell.IsInner() ? 3 : 2, columns.size());
         for (std::size_t i = 0; i < columns.size(); ++i) {
-            StepMatrix::CopyPadded(values.GetPoints() + std::size_t(_indices[i]) * _paddedSize,
-                                   _paddedSize, &points[std::size_t(columns[i]) * _paddedSize]);
+            StepMatrix::CopyPadded(ofRings + std::size_t(_indices[i]) * _paddedSize, _paddedSize,
+                                   &points[std::size_t(columns[i]) * _paddedSize]);
         }
         if (cell.IsInner()) {
             descendToChildren(cell.GetType(), plan, next, 1);

@@ -33,16 +33,16 @@ public:
     /// @name The same of plain faces, from the points of their rings
     /// @{
 
-    void Evaluate(PlainFaceType const &type, RingValues<REAL> const &values, CellPlan const &plan,
+    void Evaluate(PlainFaceType const &type, RingValues<REAL> &values, CellPlan const &plan,
                   REAL *results, std::ptrdiff_t resultStride);
-    void EvaluateDerivatives(PlainFaceType const &type, RingValues<REAL> const &values,
+    void EvaluateDerivatives(PlainFaceType const &type, RingValues<REAL> &values,
                              CellPlan const &plan, REAL *du, REAL *dv, std::ptrdiff_t resultStride);
     /// @}
 
 private:
     void evaluate(CellType const &type, CellPlan const &plan, int size, REAL const *controlPoints,
                   std::ptrdiff_t stride);
-    void evaluate(PlainFaceType const &type, RingValues<REAL> const &values, CellPlan const &plan);
+    void evaluate(PlainFaceType const &type, RingValues<REAL> &values, CellPlan const &plan);
     void descend(CellType const &type, CellPlan const &plan, std::size_t node, std::size_t depth);
     void descendToChildren(CellType const &type, CellPlan const &plan, std::size_t node,
                            std::size_t depth);

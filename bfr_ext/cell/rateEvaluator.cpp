@@ -129,7 +129,7 @@ void RateEvaluator<REAL>::Evaluate(PlainFaceType const &type) {
     // Their memory is kept for the next face.
     static thread_local std::vector<int> indices;
     FaceRings const &face = type.GetRings();
-    RingValues<REAL> const &values = _border.GetRingValues();
+    RingValues<REAL> &values = _border.GetRingValues();
     auto const getSource = [&](std::size_t child) -> Source {
         RingCell const &cell = face.GetChild(child);
         indices.resize(cell.GetColumns().size());

@@ -353,12 +353,17 @@ void RingValues<REAL>::Set(VertexRings const &rings, std::size_t numPoints, int 
         StepMatrix::Pad(points + point * stride, size, to);
     }
     std::fill_n(to, _paddedSize, REAL(0));
-    rings.Apply(_controlPoints.data(), _paddedSize, _points.data());
+    _hasAll = false;
+    _lastRing = -1;
 }
 
 template <typename REAL>
 void RingValues<REAL>::EvaluateVertex(RingCell const &vVertex, int ring, int firstFace,
                                       REAL *result) {
+    if (!_hasAll && _lastRing != ring) {
+        _lastRing = ring;
+        _rings->ApplyRing(std::size_t(ring), _controlPoints.data(), _paddedSize, _points.data());
+    }
     Ring const &ofRing = _rings->GetRings()[std::size_t(ring)];
     std::vector<REAL> const &weights = vVertex.GetVertexWeights<REAL>();
     std::vector<int> const &places = vVertex.GetPlaces().GetPlaces();

@@ -296,7 +296,7 @@ private:
     mutable PatternTable _latticeItems;
 };
 
-/// The points of rings, evaluated.
+/// The points of rings, evaluated when they are asked for.
 template <typename REAL>
 class RingValues {
 public:
@@ -308,8 +308,14 @@ public:
     std::size_t GetSize() const { return _size; }
     /// From one point to the next.
     std::size_t GetPaddedSize() const { return _paddedSize; }
-    /// The points of the rings.
-    REAL const *GetPoints() const { return _points.data(); }
+    /// The points of all rings.
+    REAL const *GetPoints() {
+        if (!_hasAll) {
+            _hasAll = true;
+            _rings->Apply(_controlPoints.data(), _paddedSize, _points.data());
+        }
+        return _points.data();
+    }
     /// Writes the point of the surface at a vertex, whose first face is \p firstFace of its ring.
     void EvaluateVertex(RingCell const &vVertex, int ring, int firstFace, REAL *result);
 
@@ -317,6 +323,8 @@ private:
     VertexRings const *_rings = nullptr;
     std::size_t _size = 0;
     std::size_t _paddedSize = 0;
+    bool _hasAll = false; // whether there are the points of all rings
+    int _lastRing = -1;   // else of this one; -1: of none
     std::vector<REAL> _controlPoints;
     std::vector<REAL> _points;
     std::vector<REAL> _center;

@@ -351,64 +351,62 @@ void VertexRings::applyCenter(Ring const &ring, int firstFace, REAL vertexWeight
 }
 
 template <std::size_t PADDED_SIZE, typename REAL>
-void VertexRings::apply(REAL const *points, std::size_t paddedSize, REAL *result) const {
+void VertexRings::apply(std::size_t number, REAL const *points, std::size_t paddedSize,
+                        REAL *result) const {
     std::size_t const stride = PADDED_SIZE == 0 ? paddedSize : PADDED_SIZE;
     REAL const *const weights = getWeights(REAL());
-    Number const *program = getProgram();
-    for (Ring const &ring : _rings) {
-        REAL *const centers = result + ring.GetCenter(0, RingStep::First) * stride;
-        REAL *const copyOfLast = centers + 2 * stride;
-        REAL *const blocks = result + ring.GetBlock(0, RingStep::First) * stride;
-        REAL *last = blocks;
-        REAL *end = blocks;
-        Number const *face = program;
-        for (std::size_t first = 0; first < stride; first += Lanes<REAL>::kCount) {
-            auto const center = Lanes<REAL>::Load(points + program[kVertex] * stride + first);
-            Lanes<REAL> sums[2] =
-                {}; // of the F-vertices at the vertex, from face 0 and from face 1 on
-            face = program + kRingHeaderSize;
-            end = blocks;
-            for (std::size_t i = 0; i < program[kNumFaces]; ++i) {
-                last = end;
-                end += (1 + std::size_t(face[kFaceSize])) * stride;
-                face = applyFace<PADDED_SIZE>(face, weights, center, points + first, paddedSize,
-                                              last + first);
-                auto const ofFace = Lanes<REAL>::Load(last + stride + first);
-                sums[0] = i == 0 ? ofFace : sums[0] + ofFace;
-                sums[1] = i <= 1 ? ofFace : sums[1] + ofFace;
-            }
-            if (program[kNumFaces] > 1) {
-                sums[1] = sums[1] + Lanes<REAL>::Load(blocks + stride + first);
-            }
-            for (std::size_t i = 0; i < 2; ++i) {
-                (center * weights[program[kVertexWeight]] + sums[i] * weights[program[kFaceWeight]])
-                    .Store(centers + i * stride + first);
-            }
+    Number const *const program = getProgram() + _firsts[number];
+    Ring const &ring = _rings[number];
+    REAL *const centers = result + ring.GetCenter(0, RingStep::First) * stride;
+    REAL *const copyOfLast = centers + 2 * stride;
+    REAL *const blocks = result + ring.GetBlock(0, RingStep::First) * stride;
+    REAL *last = blocks;
+    REAL *end = blocks;
+    for (std::size_t first = 0; first < stride; first += Lanes<REAL>::kCount) {
+        auto const center = Lanes<REAL>::Load(points + program[kVertex] * stride + first);
+        Lanes<REAL> sums[2] = {}; // of the F-vertices at the vertex, from face 0 and from face 1 on
+        Number const *face = program + kRingHeaderSize;
+        end = blocks;
+        for (std::size_t i = 0; i < program[kNumFaces]; ++i) {
+            last = end;
+            end += (1 + std::size_t(face[kFaceSize])) * stride;
+            face = applyFace<PADDED_SIZE>(face, weights, center, points + first, paddedSize,
+                                          last + first);
+            auto const ofFace = Lanes<REAL>::Load(last + stride + first);
+            sums[0] = i == 0 ? ofFace : sums[0] + ofFace;
+            sums[1] = i <= 1 ? ofFace : sums[1] + ofFace;
         }
-        copyPoints(last, end, copyOfLast);
-        copyPoints(blocks, blocks + ring.GetBlockSize(0, RingStep::First) * stride, end);
-        program = face;
+        if (program[kNumFaces] > 1) {
+            sums[1] = sums[1] + Lanes<REAL>::Load(blocks + stride + first);
+        }
+        for (std::size_t i = 0; i < 2; ++i) {
+            (center * weights[program[kVertexWeight]] + sums[i] * weights[program[kFaceWeight]])
+                .Store(centers + i * stride + first);
+        }
+    }
+    copyPoints(last, end, copyOfLast);
+    copyPoints(blocks, blocks + ring.GetBlockSize(0, RingStep::First) * stride, end);
+}
+
+template <typename REAL>
+void VertexRings::applyFirst(std::size_t ring, REAL const *points, std::size_t paddedSize,
+                             REAL *result) const {
+    if (paddedSize == StepMatrix::kPadding) {
+        apply<StepMatrix::kPadding>(ring, points, paddedSize, result);
+    } else {
+        apply<0>(ring, points, paddedSize, result);
     }
 }
 
 template <typename REAL>
-void VertexRings::Apply(REAL const *points, std::size_t paddedSize, REAL *result) const {
-    if (paddedSize == StepMatrix::kPadding) {
-        apply<StepMatrix::kPadding>(points, paddedSize, result);
-    } else {
-        apply<0>(points, paddedSize, result);
+void VertexRings::applySecond(std::size_t ring, REAL const *points, std::size_t paddedSize,
+                              REAL *result) const {
+    REAL *block = result + GetBlock(int(ring), 0, RingStep::Second) * paddedSize;
+    for (int face = 0; face < _rings[ring].GetNumFaces(); ++face) {
+        applyFirstCenter(ring, face, points, result, paddedSize, block);
+        block += _rings[ring].GetBlockSize(face, RingStep::Second) * paddedSize;
     }
-    if (!_inner.IsUsed()) {
-        return;
-    }
-    for (std::size_t ring = 0; ring < _rings.size(); ++ring) {
-        REAL *block = result + GetBlock(int(ring), 0, RingStep::Second) * paddedSize;
-        for (int face = 0; face < _rings[ring].GetNumFaces(); ++face) {
-            applyFirstCenter(ring, face, points, result, paddedSize, block);
-            block += _rings[ring].GetBlockSize(face, RingStep::Second) * paddedSize;
-        }
-    }
-    _inner.Apply(_rings, paddedSize, result);
+    _inner.Apply(_rings, ring, paddedSize, result);
 }
 
 template <typename REAL>
@@ -433,8 +431,10 @@ void VertexRings::applyFirstCenter(std::size_t ring, int firstFace, REAL const *
                 rings + _rings[ring].GetBlock(0, RingStep::First) * paddedSize, paddedSize, result);
 }
 
-template void VertexRings::Apply(float const *, std::size_t, float *) const;
-template void VertexRings::Apply(double const *, std::size_t, double *) const;
+template void VertexRings::applyFirst(std::size_t, float const *, std::size_t, float *) const;
+template void VertexRings::applySecond(std::size_t, float const *, std::size_t, float *) const;
+template void VertexRings::applyFirst(std::size_t, double const *, std::size_t, double *) const;
+template void VertexRings::applySecond(std::size_t, double const *, std::size_t, double *) const;
 template void VertexRings::ApplyCenter(int, int, float const *, float const *, std::size_t,
                                        float *) const;
 template void VertexRings::ApplyCenter(int, int, double const *, double const *, std::size_t,

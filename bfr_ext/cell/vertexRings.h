@@ -49,7 +49,23 @@ public:
     /// \param points      of the patch, and behind them one whose numbers are 0
     /// \param paddedSize  numbers of a point, a multiple of StepMatrix::kPadding
     template <typename REAL>
-    void Apply(REAL const *points, std::size_t paddedSize, REAL *result) const;
+    void Apply(REAL const *points, std::size_t paddedSize, REAL *result) const {
+        for (std::size_t ring = 0; ring < _rings.size(); ++ring) {
+            applyFirst(ring, points, paddedSize, result);
+        }
+        for (std::size_t ring = 0; _inner.IsUsed() && ring < _rings.size(); ++ring) {
+            applySecond(ring, points, paddedSize, result);
+        }
+    }
+    /// Writes the points of one ring to where Apply() writes them.
+    template <typename REAL>
+    void ApplyRing(std::size_t ring, REAL const *points, std::size_t paddedSize,
+                   REAL *result) const {
+        applyFirst(ring, points, paddedSize, result);
+        if (_inner.IsUsed()) {
+            applySecond(ring, points, paddedSize, result);
+        }
+    }
     /// Writes the point of a ring's vertex, from any face on, as Apply() writes it from face 0 on, of the last
     /// step.
     ///
@@ -100,8 +116,14 @@ private:
     template <typename REAL>
     void applyFirstCenter(std::size_t ring, int firstFace, REAL const *points, REAL const *rings,
                           std::size_t paddedSize, REAL *result) const;
+    template <typename REAL>
+    void applyFirst(std::size_t ring, REAL const *points, std::size_t paddedSize,
+                    REAL *result) const;
+    template <typename REAL>
+    void applySecond(std::size_t ring, REAL const *points, std::size_t paddedSize,
+                     REAL *result) const;
     template <std::size_t PADDED_SIZE, typename REAL>
-    void apply(REAL const *points, std::size_t paddedSize, REAL *result) const;
+    void apply(std::size_t ring, REAL const *points, std::size_t paddedSize, REAL *result) const;
 
     std::size_t _numPoints = 0;
     std::vector<Ring> _rings;

@@ -214,6 +214,33 @@ TEST(CellTree, TessellationsNeedAllPointsOfTheTree) {
     EXPECT_EQ(std::set<int>(levels.begin(), levels.end()), std::set<int>{3});
 }
 
+TEST(CellForest, CopiesAndMovesAreValues) {
+    auto const refiner = CreateRefiner(GetShape("cube"), ReferenceMask::Smooth, 0, {});
+    CellTree const tree(4, 2);
+    CellForest forest(*refiner);
+    CellForest assigned(*refiner);
+    forest.SetTree(2, tree);
+    forest.MatchEdges();
+    auto const numPoints = forest.GetNumBoundaryPoints();
+    ASSERT_GT(numPoints, 8);
+    CellForest copy(forest);
+    assigned = forest;
+    forest.SetTree(2, CellTree(4));
+    forest.MatchEdges();
+    EXPECT_EQ(forest.GetNumBoundaryPoints(), 8);
+    auto const expectTree = [&](CellForest const &other) {
+        EXPECT_EQ(other.GetTree(2).GetNumCells(), tree.GetNumCells());
+        EXPECT_EQ(other.GetNumBoundaryPoints(), numPoints);
+        EXPECT_TRUE(other.GetTessellation(2).IsValid());
+    };
+    expectTree(copy);
+    expectTree(assigned);
+    CellForest const moved(std::move(copy));
+    expectTree(moved);
+    copy = moved; // what was moved from can be assigned to
+    expectTree(copy);
+}
+
 TEST(CellForest, TreesOfOtherFacesHaveNoTessellation) {
     auto const refiner = CreateRefiner(GetShape("cube"), ReferenceMask::Smooth, 0, {});
     CellForest forest(*refiner);

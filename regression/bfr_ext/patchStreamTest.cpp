@@ -10,6 +10,7 @@
 #include "regression/shapes/featureShapes.h"
 #include "regression/shapes/flatShapes.h"
 #include "regression/shapes/shapeDescriptor.h"
+#include "regression/shapes/torus.h"
 
 #include <gtest/gtest.h>
 
@@ -105,12 +106,22 @@ void expectSurfaces(Shape const &shape, ReferenceMask mask, int numLevels, doubl
 
 } // namespace
 
+// More vertices than a thread remembers.
+TEST(PatchStreamTest, HandsOutVerticesOfManyFaces) {
+    ThreadsScope const threads(1);
+    expectSurfaces<float>(MakeTorus(72, 72, TorusFaces::IrregularTriangles), ReferenceMask::Smooth,
+                          1, 0);
+}
+
 TEST(PatchStreamTest, HandsOutWhatSurfacesAre) {
     for (char const *const name :
          {"mixedSharpnessQuads", "cornersTriangles", "creaseLoopClosed", "creasedBall"}) {
         expectSurfaces<double>(GetFeatureShape(name), ReferenceMask::Cosine, 6, 1e-12);
     }
     for (Shape const &shape : GetManifoldShapes()) {
+        // Faces with vertices alone.
+        expectSurfaces<float>(shape, ReferenceMask::Smooth, 1, 0);
+        expectSurfaces<double>(shape, ReferenceMask::Average, 1, 0);
         if (shape.GetNumFaces() <= 30) {
             expectSurfaces<double>(shape, ReferenceMask::Smooth, 5, 1e-12);
             expectSurfaces<float>(shape, ReferenceMask::Average, 4, 1e-5);

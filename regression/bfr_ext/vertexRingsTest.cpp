@@ -56,7 +56,7 @@ std::vector<double> pick(std::vector<double> const &points, std::size_t stride,
 }
 
 /// Overload for values of rings, by point of a cell's type or by point that its step makes.
-std::vector<double> pickCell(RingPlaces const &places, RingValues<double> const &values,
+std::vector<double> pickCell(RingPlaces const &places, RingValues<double> &values,
                              std::vector<int> const &indices) {
     std::vector<int> ofType(indices.size());
     for (std::size_t column = 0; column < indices.size(); ++column) {
@@ -204,7 +204,7 @@ private:
     }
 
     void expectEdge(CellType const &type, FaceRings const &face, int edge,
-                    std::vector<int> const &turns, RingValues<double> const &values,
+                    std::vector<int> const &turns, RingValues<double> &values,
                     std::vector<double> const &points) {
         CellType::BorderItem const &item = type.GetBorderItem(turns.data(), std::size_t(edge));
         RingCell const *const cell = face.GetLongEdge(edge, item.isReversed);
