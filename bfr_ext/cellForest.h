@@ -13,10 +13,6 @@
 
 namespace OpenSubdivHex::BfrExt {
 
-namespace internal {
-class KeptPlans;
-}
-
 /// \brief A watertight tessellation of a mesh: a tree of cells for each base face, and a polyline for each edge.
 ///
 /// \code
@@ -93,11 +89,10 @@ private:
 
     FarExt::SurfaceFaces _faces;
     std::vector<CellTree> _trees;
-    std::vector<char> _isMatched;                // by face; where it is not known, too, it is false
-    std::vector<Polyline> _edges;                // what was set
-    std::vector<Polyline> _polylines;            // the same with the points of faces
-    std::vector<Number> _firstPoints;            // by edge; then their end
-    std::shared_ptr<internal::KeptPlans> _plans; // of forests of the same mesh; null: none
+    std::vector<char> _isMatched;     // by face; where it is not known, too, it is false
+    std::vector<Polyline> _edges;     // what was set
+    std::vector<Polyline> _polylines; // the same with the points of faces
+    std::vector<Number> _firstPoints; // by edge; then their end
 };
 
 } // namespace OpenSubdivHex::BfrExt

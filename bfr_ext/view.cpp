@@ -617,7 +617,6 @@ CellForest View::makeForest(SurfaceFactory const &factory, ViewBounds *bounds,
         return edge >= factory.GetLevel().GetNumEdges() || factory.GetLevel().IsEdgeInfSharp(edge);
     };
     CellForest forest(factory.GetMesh());
-    forest._plans = bounds ? bounds->_plans : nullptr;
     bool const hasPrevious = previous && previous->GetNumFaces() == forest.GetNumFaces();
     bool const hasPreviousEdges = hasPrevious && previous->_edges.size() == forest._edges.size();
     std::vector<std::vector<CellVisibility>> visibility(counts ? std::size_t(forest.GetNumFaces())

@@ -2,7 +2,6 @@
 #include "viewBounds.h"
 
 #include "cell/cellMeasures.h"
-#include "stream/patchPlans.h"
 
 #include "far_ext/vtr/parallel.h"
 
@@ -12,8 +11,7 @@ namespace OpenSubdivHex::BfrExt {
 
 ViewBounds::ViewBounds(SurfaceFactory const &factory, Options options)
     : _factory(factory), _options(options),
-      _measures(std::make_unique<internal::MeshMeasures>(factory.GetNumFaces())),
-      _plans(std::make_shared<internal::KeptPlans>()) {}
+      _measures(std::make_unique<internal::MeshMeasures>(factory.GetNumFaces())) {}
 
 ViewBounds::~ViewBounds() = default;
 
@@ -25,7 +23,6 @@ void ViewBounds::Clear() {
         face = {};
     }
     _measures->memory = 0;
-    _plans->Clear();
 }
 
 // Forgets what depends on positions that are not those of the last call.

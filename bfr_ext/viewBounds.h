@@ -13,7 +13,6 @@ namespace OpenSubdivHex::BfrExt {
 class View;
 
 namespace internal {
-class KeptPlans;
 struct MeshMeasures;
 } // namespace internal
 
@@ -88,7 +87,6 @@ private:
     Options const _options;
     std::vector<double> _points; // the positions, once there are some
     std::unique_ptr<internal::MeshMeasures> _measures;
-    std::shared_ptr<internal::KeptPlans> _plans; // of streams of the forests
 };
 
 } // namespace OpenSubdivHex::BfrExt
