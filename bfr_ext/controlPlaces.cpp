@@ -158,10 +158,11 @@ bool SurfaceFactory::FindSurfacePlace(Index controlFace, REAL const controlUv[2]
                               getPlaneVertex(ofSurface, (side.local + 1) % size)};
     if (place.isAtVertex) {
         std::swap(triangle.second, triangle.third);
-        // The vertex is the centre of its face, unless it is kept: V-vertices come before all others.
-        Index const numVertexVertices = _level.GetFaceVertices(0)[1];
+        // The vertex is the centre of its face, unless it is kept.
+        Index const kept =
+            control.GetVertexChildVertex(control.GetFaceVertices(controlFace)[place.corner / 2]);
         for (int i = 0; i < size; ++i) {
-            if (_faces.GetVertex(side.face, i) < numVertexVertices) {
+            if (_faces.GetVertex(side.face, i) == kept) {
                 triangle.apex = getPlaneVertex(ofSurface, i);
             }
         }

@@ -97,8 +97,9 @@ private:
     bool isBesideLine(Far::Index face) const {
         Far::Index const first = _level.faceFirstCorner[face];
         Far::Index const end = _level.faceFirstCorner[face + 1];
-        return !FindCornerTags(_level.quadLineCorners, first, end).empty() ||
-               !FindCornerTags(_level.lineRowCorners, first, end).empty();
+        return _schemeOptions.faceMask == FaceMask::Smooth &&
+               (!FindCornerTags(_level.quadLineCorners, first, end).empty() ||
+                !FindCornerTags(_level.lineRowCorners, first, end).empty());
     }
     LimitMask findAfterStep(Far::Index face) const;
     LimitMask stepBack(LimitMask mask, Far::Index face) const;

@@ -428,7 +428,7 @@ public:
     DenseRuleMaker(RefinementRules &rules, FaceMask faceMask)
         : _rules(rules), _level(rules._level), _faceMask(faceMask),
           _isVertex(rules._interpolation == Interpolation::Vertex),
-          _hasQuadRows(_isVertex && faceMask == FaceMask::Smooth), _masks(_level.numHexagonalSteps),
+          _hasPathRows(_isVertex && faceMask == FaceMask::Smooth), _masks(_level.numHexagonalSteps),
           _quadMask(ComputeQuadMask(_level.numHexagonalSteps)) {}
 
     void Make() {
@@ -509,7 +509,7 @@ private:
     Level const &_level;
     FaceMask _faceMask;
     bool _isVertex;
-    bool _hasQuadRows; // level 0 has quadLineCorners for all masks
+    bool _hasPathRows; // level 0 has quadLineCorners for all masks
     IrregularMasks _masks;
     QuadMask _quadMask;
     std::unordered_map<int, std::vector<double>> _halfFaceWeights; // by number of corners
@@ -573,7 +573,7 @@ void RefinementRules::DenseRuleMaker::readTags(Index face, FaceTags &tags) {
 auto RefinementRules::DenseRuleMaker::findPathRows(FaceTags const &tags, int corner) const
     -> PathRows {
     PathRows result;
-    if (!_hasQuadRows || corner >= kHexagon || tags.size > kHexagon) {
+    if (!_hasPathRows || corner >= kHexagon || tags.size > kHexagon) {
         return result;
     }
     if (QuadFlags const flags = tags.quadFlags[std::size_t(corner)];
