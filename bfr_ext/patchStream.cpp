@@ -298,9 +298,7 @@ template <typename REAL>
 std::shared_ptr<internal::PatchPlans> PatchStream<REAL>::Data::makePlans() const {
     internal::PlanOptions const options = {_options.GetTessellationOptions(),
                                            _options.HasDerivatives()};
-    return _forest && _forest->GetData().plans
-               ? _forest->GetData().plans->Find(options, _options.GetMaxMemory())
-               : std::make_shared<internal::PatchPlans>(options, _options.GetMaxMemory());
+    return std::make_shared<internal::PatchPlans>(options, _options.GetMaxMemory());
 }
 
 // The levels of the edges, then that of the inside; none of a forest.

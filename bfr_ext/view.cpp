@@ -274,7 +274,7 @@ private:
             for (int corner = 0; corner < _cells[cell].GetType().GetNumCorners(); ++corner) {
                 double du[3];
                 double dv[3];
-                _cells.EvaluateCorner(cell, corner, du, dv);
+                _cells[cell].EvaluateCorner(corner, du, dv);
                 maker.AddNormal(Cross(ToVector3(du), ToVector3(dv)));
             }
             getMeasures(node).facing = int(_measures.facings.size());
@@ -582,7 +582,6 @@ CellForest makeForest(ViewData const &view, SurfaceFactory const &factory, Bound
     };
     CellForest result(factory.GetMesh());
     ForestData &forest = result.GetData();
-    forest.plans = bounds ? bounds->plans : nullptr;
     ForestData const *const last = previous && previous->GetNumFaces() == forest.GetNumFaces()
                                        ? &previous->GetData()
                                        : nullptr;

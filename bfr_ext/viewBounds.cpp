@@ -30,7 +30,6 @@ void BoundsData::Clear() {
         face = {};
     }
     memory = 0;
-    plans->Clear();
 }
 
 template <typename REAL>

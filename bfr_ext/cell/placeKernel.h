@@ -88,13 +88,10 @@ private:
 /// \brief Points, and where the weighted sums of them go that a matrix makes.
 ///
 /// Each number of the result is a sum of its own, over the points in their order: so it does not depend on what is
-/// computed beside it.  Blocks of one register of the widest machine have kNumNarrowSums sums for each number, of the
-/// points in turn, which do not wait for each other.  All kernels for machines that fuse products with sums do so, and give the same bits; the
-/// portable one, for machines that may not, gives its own.
+/// computed beside it.  All kernels for machines that fuse products with sums give the same bits; the portable one, for
+/// machines that may not, gives its own.
 template <typename REAL>
 struct PlaceSums {
-    static constexpr std::size_t kNumNarrowSums = 4;
-
     REAL const *points;
     std::ptrdiff_t stride; ///< from one point to the next, in numbers
     std::size_t size;      ///< of a point

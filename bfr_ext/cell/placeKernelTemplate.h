@@ -184,21 +184,6 @@ public:
         TileSums const tiles{matrix.GetNumPoints(), matrix.GetWidth(begin), points, stride,
                              indices};
         REAL const *const weights = matrix.GetBlock(begin);
-        if (tiles.width == PlaceMatrix<REAL>::kLanes) {
-            // Machines that split wide registers take half the time for so few places.
-            if constexpr (BYTES == 64) {
-                if (count <= kSize / 2) {
-                    TileSums<BYTES / 2, REAL> const half{tiles.numPoints, tiles.width, points,
-                                                         stride, indices};
-                    half.template formNarrow<NUM_COMPONENTS, HAS_INDICES>(weights, 0, result);
-                    return;
-                }
-            }
-            for (std::size_t first = 0; first < count; first += kSize) {
-                tiles.template formNarrow<NUM_COMPONENTS, HAS_INDICES>(weights, first, result);
-            }
-            return;
-        }
         forTiles<kMaxTile>(0, count, [&](auto numLanes, std::size_t first) {
             tiles.template form<numLanes(), NUM_COMPONENTS, HAS_INDICES>(weights, first, result);
         });
@@ -211,9 +196,6 @@ public:
     int const *indices;
 
 private:
-    template <std::size_t OTHER_BYTES, typename OTHER_REAL>
-    friend class TileSums;
-
     // Registers of places at most, so that the sums of all components are in registers: there are 32 of
     // the widest ones, and else 16.
     static constexpr std::size_t kMaxTile = BYTES == 64 ? 6 : 3;
@@ -251,46 +233,6 @@ private:
         for (std::size_t lane = 0; lane < NUM_LANES; ++lane) {
             storeSums(sums[lane], first + lane * kSize, result);
         }
-    }
-
-    /// One register of places of a narrow block.
-    template <std::size_t NUM_COMPONENTS, bool HAS_INDICES, typename RESULT>
-    void formNarrow(REAL const *weights, std::size_t first, RESULT &result) const {
-        constexpr std::size_t kNumSums = PlaceSums<REAL>::kNumNarrowSums;
-        Lanes sums[kNumSums][NUM_COMPONENTS];
-        setZero(sums);
-        weights += first;
-        auto const add = [&](std::size_t i, Lanes(&to)[NUM_COMPONENTS]) {
-            auto const place = std::ptrdiff_t(HAS_INDICES ? std::size_t(indices[i]) : i);
-            REAL const *const point = points + place * stride;
-            Lanes ofPoint = Load(weights + i * width);
-            keepInRegister(ofPoint);
-            for (std::size_t k = 0; k < NUM_COMPONENTS; ++k) {
-                AddProducts(to[k], ofPoint, point[k]);
-            }
-        };
-        std::size_t i = 0;
-        for (; i + kNumSums <= numPoints; i += kNumSums) {
-            for (std::size_t k = 0; k < kNumSums; ++k) {
-                add(i + k, sums[k]);
-            }
-        }
-        static_assert(kNumSums == 4);
-        // No loop, in which GCC would keep the sums in memory.
-        if (i < numPoints) {
-            add(i, sums[0]);
-        }
-        if (i + 1 < numPoints) {
-            add(i + 1, sums[1]);
-        }
-        if (i + 2 < numPoints) {
-            add(i + 2, sums[2]);
-        }
-        Lanes total[NUM_COMPONENTS];
-        for (std::size_t k = 0; k < NUM_COMPONENTS; ++k) {
-            total[k] = (sums[0][k] + sums[1][k]) + (sums[2][k] + sums[3][k]);
-        }
-        storeSums(total, first, result);
     }
 
     /// GCC would keep an array in memory that is set to 0 as a whole.

@@ -190,14 +190,6 @@ RingCell const &RingCells::find(CellPatch cell, std::vector<RingLayout> const &r
         kKind, key.data(), key.data() + key.size(), [&] { return std::move(ringCell); });
 }
 
-bool RingCells::AreFacesAlike(RingLayout const &ring) {
-    std::vector<int> verts = ring.verts;
-    std::sort(verts.begin(), verts.end());
-    bool const hasVertexTwice = std::adjacent_find(verts.begin(), verts.end()) != verts.end();
-    return !hasVertexTwice && std::all_of(ring.faceSizes.begin(), ring.faceSizes.end(),
-                                          [&](int size) { return size == ring.faceSizes[0]; });
-}
-
 RingItem const &RingItem::Get(CellType const &type, CellPatch const &patch, RingCells &cells) {
     constexpr int kKind = PatternTable::GetKind<double>(PatternOf::RingItem);
     return type.GetPatterns().Get<RingItem>(kKind, nullptr, nullptr, [&] {
@@ -229,10 +221,10 @@ public:
         RingFace face = {&findChild(CellKind::Whole, findKey(_layouts), 0, 0), {}, {}};
         for (int i = 0; i < _numEdges; ++i) {
             face.edges.push_back(makeEdge(i));
-            face.verts.push_back(makeVertex(i));
+            face.vVertices.push_back(makeVVertices(i));
         }
         face.edges.shrink_to_fit();
-        face.verts.shrink_to_fit();
+        face.vVertices.shrink_to_fit();
         return face;
     }
 
@@ -264,12 +256,13 @@ private:
         return {&half, {&longEdge, &reversed}};
     }
 
-    RingVertex makeVertex(int vert) {
+    std::vector<RingCell const *> makeVVertices(int vert) {
         RingLayout const &ring = getLayout(vert);
-        int const numTurns = RingCells::AreFacesAlike(ring) ? 1 : int(ring.faceSizes.size());
-        RingVertex result;
+        int const numTurns = int(ring.faceSizes.size());
+        std::vector<RingCell const *> result;
+        result.reserve(std::size_t(numTurns));
         for (int turn = 0; turn < numTurns; ++turn) {
-            result.vVertices.push_back(
+            result.push_back(
                 &findItem(CellKind::Vertex, findKey({ring.From(-turn)}), _numEdges + vert, turn));
         }
         return result;

@@ -146,25 +146,14 @@ struct RingEdge {
     RingCell const *longEdges[2];
 };
 
-/// Product of the first step of a vertex of plain base faces.
-struct RingVertex {
-    std::size_t GetHeapSize() const { return internal::GetHeapSize(vVertices); }
-
-    /// By how many faces lie before that which asks; one alone if these make no difference.
-    std::vector<RingCell const *> vVertices;
-
-    RingCell const &Get(int turn) const {
-        return *vVertices[vVertices.size() == 1 ? 0 : std::size_t(turn)];
-    }
-};
-
 /// Product of the first step of a plain base face.
 struct RingFace {
-    std::size_t GetHeapSize() const { return GetHeapSizes(edges, verts); }
+    std::size_t GetHeapSize() const { return GetHeapSizes(edges, vVertices); }
 
     RingCell const *whole;
     std::vector<RingEdge> edges;
-    std::vector<RingVertex> verts;
+    /// By vertex, and by how many of its faces lie before this one.
+    std::vector<std::vector<RingCell const *>> vVertices;
 };
 
 /// The cells of plain base faces with some rules.  Any number of threads may use it.
@@ -204,9 +193,6 @@ public:
                                        MAKE const &make) {
         return _latticeItems.Get<LatticeItem>(int(kind), &faceSize, &faceSize + 1, make);
     }
-
-    /// Whether a ring is the same from all of its faces on.
-    static bool AreFacesAlike(RingLayout const &ring);
 
 private:
     template <typename FOUND, typename MAKE>
@@ -282,7 +268,8 @@ public:
 
     /// The V-vertex of a vertex with so many faces before this one; null where it is in a lattice.
     RingCell const *GetVVertex(int vert, int turn) const {
-        return IsVertexInLattice(vert) ? nullptr : &_cells->verts[std::size_t(vert)].Get(turn);
+        return IsVertexInLattice(vert) ? nullptr
+                                       : _cells->vVertices[std::size_t(vert)][std::size_t(turn)];
     }
 
 private:

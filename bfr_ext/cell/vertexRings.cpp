@@ -271,7 +271,6 @@ VertexRings::Number const *VertexRings::applyFace(Number const *program, REAL co
                                                   Lanes<REAL> const &center, REAL const *points,
                                                   std::size_t paddedSize, REAL *result) {
     std::size_t const stride = PADDED_SIZE == 0 ? paddedSize : PADDED_SIZE;
-    constexpr std::size_t kTriangle = 3;
     std::size_t const faceSize = program[kFaceSize];
     REAL const *const mask = weights + program[kMask];
     Number const *const verts = program + kFaceHeaderSize; // behind that which has the ring
@@ -297,14 +296,6 @@ VertexRings::Number const *VertexRings::applyFace(Number const *program, REAL co
         sum = sum + ofPoints * weight;
     }
     store(sum, 0);
-    if (faceSize == kTriangle) {
-        Lanes<REAL> const y = load(verts[0]);
-        Lanes<REAL> const z = load(verts[1]);
-        store(center * mask[0] + (y + z) * mask[1], 1);
-        store(y * mask[0] + (z + center) * mask[1], 2);
-        store(z * mask[0] + (center + y) * mask[1], 3);
-        return run;
-    }
     auto const getVertex = [&](std::size_t place) {
         std::size_t const corner = place < faceSize ? place : place - faceSize;
         return corner == 0 ? center : load(verts[corner - 1]);

@@ -2,8 +2,6 @@
 #ifndef OPENSUBDIVHEX_BFR_EXT_STREAM_BOUNDS_DATA_H
 #define OPENSUBDIVHEX_BFR_EXT_STREAM_BOUNDS_DATA_H
 
-#include "patchPlans.h"
-
 #include "bfr_ext/cell/cellMeasures.h"
 #include "bfr_ext/viewBounds.h"
 
@@ -19,8 +17,7 @@ struct BoundsData {
     using Index = ViewBounds::Index;
 
     BoundsData(SurfaceFactory const &ofMesh, ViewBounds::Options const &ofBounds)
-        : factory(ofMesh), options(ofBounds), faces(std::size_t(ofMesh.GetNumFaces())),
-          plans(std::make_shared<KeptPlans>()) {}
+        : factory(ofMesh), options(ofBounds), faces(std::size_t(ofMesh.GetNumFaces())) {}
 
     /// Forgets what depends on positions that are not those of the last call.
     template <typename REAL>
@@ -35,7 +32,6 @@ struct BoundsData {
     std::vector<double> points; ///< the positions, once there are some
     std::vector<FaceMeasures> faces;
     std::atomic<std::size_t> memory{0}; ///< that measures take, in bytes
-    std::shared_ptr<KeptPlans> plans;   ///< of streams of the forests
 
 private:
     void forget(std::vector<char> const &isChanged);

@@ -2,13 +2,10 @@
 #ifndef OPENSUBDIVHEX_BFR_EXT_STREAM_FOREST_DATA_H
 #define OPENSUBDIVHEX_BFR_EXT_STREAM_FOREST_DATA_H
 
-#include "patchPlans.h"
-
 #include "bfr_ext/cellForest.h"
 
 #include "far_ext/surfaceFaces.h"
 
-#include <memory>
 #include <vector>
 
 namespace OpenSubdivHex::BfrExt::internal {
@@ -31,7 +28,6 @@ struct ForestData {
     std::vector<Polyline> edges;                 // what was set
     std::vector<Polyline> polylines;             // the same with the points of faces
     std::vector<CellForest::Number> firstPoints; // by edge; then their end
-    std::shared_ptr<KeptPlans> plans;            // of forests of the same mesh; null: none
 };
 
 } // namespace OpenSubdivHex::BfrExt::internal

@@ -20,13 +20,6 @@ namespace OpenSubdivHex::BfrExt::internal {
 struct PlanOptions {
     LevelTessellation::Options tessellation;
     bool hasDerivatives;
-
-    friend bool operator==(PlanOptions const &a, PlanOptions const &b) {
-        return a.tessellation.GetFacetSize() == b.tessellation.GetFacetSize() &&
-               a.tessellation.GetFacetStride() == b.tessellation.GetFacetStride() &&
-               a.tessellation.GetCoordStride() == b.tessellation.GetCoordStride() &&
-               a.hasDerivatives == b.hasDerivatives;
-    }
 };
 
 /// \brief Shared by patches with the same levels, or the same tree: their tessellation, with the
@@ -78,7 +71,6 @@ public:
     PatchPlans(PlanOptions const &options, std::size_t maxMemory)
         : _options(options), _maxMemory(maxMemory) {}
 
-    PlanOptions const &GetOptions() const { return _options; }
     std::size_t GetMaxMemory() const { return _maxMemory; }
     /// PatchPlan::GetSizeOfMaking().
     std::size_t GetSizeOfMaking(FaceLevels const &levels) const {
@@ -234,29 +226,6 @@ private:
     std::mutex _mutex;
     std::list<Entry> _plans; // the one that was asked for last comes first
     std::unordered_map<std::vector<int>, std::list<Entry>::iterator, Hash> _places;
-};
-
-/// \brief The plans of the last stream, for those of the next forest of the same mesh: from frame to frame most
-/// trees are some that there were.  Any number of threads may use it.
-class KeptPlans {
-public:
-    /// The plans of the last call, or new ones where options differ.
-    std::shared_ptr<PatchPlans> Find(PlanOptions const &options, std::size_t maxMemory) {
-        std::lock_guard<std::mutex> const lock(_mutex);
-        if (!_plans || !(_plans->GetOptions() == options) || _plans->GetMaxMemory() != maxMemory) {
-            _plans = std::make_shared<PatchPlans>(options, maxMemory);
-        }
-        return _plans;
-    }
-    /// Forgets them.
-    void Clear() {
-        std::lock_guard<std::mutex> const lock(_mutex);
-        _plans.reset();
-    }
-
-private:
-    std::mutex _mutex;
-    std::shared_ptr<PatchPlans> _plans;
 };
 
 /// \brief Adds up what plans take in memory, each counted once, until it is more than there is.  Any

@@ -78,23 +78,16 @@ public:
         std::vector<REAL> results(_numPlaces * _stride, REAL(kUntouched));
         auto const form = [&](std::size_t row, std::size_t place) {
             for (std::size_t k = 0; k < _size; ++k) {
-                // Narrow blocks have several.
-                bool const isNarrow =
-                    _matrix.GetWidth(row / PlaceMatrix<REAL>::kMaxWidth *
-                                     PlaceMatrix<REAL>::kMaxWidth) == PlaceMatrix<REAL>::kLanes;
-                // Stored, so that no compiler fuses products with them.
-                REAL volatile sums[4] = {};
+                // Stored, so that no compiler fuses products with it.
+                REAL volatile sum = 0;
                 for (std::size_t i = 0; i < _stencils[row].size(); ++i) {
                     std::size_t const point = _indices.empty() ? i : std::size_t(_indices[i]);
                     REAL const weight = REAL(_stencils[row][i]);
                     REAL const number = _points[point * _stride + k];
                     REAL volatile const product = weight * number;
-                    REAL volatile &sum = sums[isNarrow ? i % 4 : 0];
                     sum = isFused ? std::fma(weight, number, REAL(sum)) : sum + product;
                 }
-                REAL volatile const first = sums[0] + sums[1];
-                REAL volatile const second = sums[2] + sums[3];
-                results[place * _stride + k] = first + second;
+                results[place * _stride + k] = sum;
             }
         };
         for (std::size_t row = 0; _runs.empty() && row < _numPlaces; ++row) {
