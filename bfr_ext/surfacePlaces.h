@@ -43,7 +43,7 @@ public:
     ///
     /// \param factory    which need not live on
     /// \param numPlaces  how many there are, 0 or more
-    /// \param faces      by place, a face of factory.GetLevel()
+    /// \param faces      by place, a base face of the factory
     /// \param uvs        by place, u and v in that face, which are finite
     /// \param options    what points are evaluated
     /// \param status     names a face without a surface, or a place that is not finite; no point is evaluated then

@@ -43,6 +43,11 @@ struct MeshSurfaces {
 template <typename REAL>
 void CheckForest(MeshSurfaces<REAL> const &mesh, BfrExt::CellForest const &forest, Dice &dice);
 
+/// \brief Tessellations of Bfr, with rates: points that are the same as at single places, on edges to the bit for both
+/// faces.
+template <typename REAL>
+void CheckRates(MeshSurfaces<REAL> const &mesh, Dice &dice);
+
 /// Streams of PatchLevels or of a CellForest: the same bits for any memory and threads, as numbered.
 template <typename REAL, typename SOURCE>
 void CheckStreams(MeshSurfaces<REAL> const &mesh, SOURCE const &source, Dice &dice);

@@ -86,7 +86,7 @@ void CheckEvaluators(OracleLevels const &levels, Dice &dice);
 void CheckLimits(OracleLevels const &levels, Dice &dice);
 
 /// \brief Surfaces of base faces, of one of the values: against the limits of vertices, at single places and
-/// in tessellations, streams and views.
+/// in tessellations by levels and by rates, streams and views.
 void CheckSurfaces(OracleLevels const &levels, Dice &dice);
 
 /// \brief Patches of a level: they cover their faces, places are found in them, weights sum up, and their corners lie

@@ -306,6 +306,7 @@ void checkSurfaces(OracleLevels const &levels, OracleLevels::Values const &value
     }
     forest.MatchEdges();
     CheckForest(mesh, forest, dice);
+    CheckRates(mesh, dice);
     if (values.mode != FarExt::INTERPOLATE_VERTEX) {
         return;
     }
