@@ -65,6 +65,13 @@ void BorderEvaluator<REAL>::SetFace(CellType const &type, int const *turns, REAL
     _size = size;
     _paddedSize = StepMatrix::GetPaddedSize(size);
     _edge = {};
+    // As long as the type is there, so are its items and their matrices.
+    if (_typeNumber != type.GetNumber()) {
+        _typeNumber = type.GetNumber();
+        _items.assign(2 * _numEdges, {});
+        _places = {};
+        _vertex = {};
+    }
 }
 
 template <typename REAL>
@@ -82,6 +89,9 @@ void BorderEvaluator<REAL>::SetFace(PlainFaceType const &type, int const *turns,
     _size = size;
     _paddedSize = _values.GetPaddedSize();
     _edge = {};
+    _typeNumber = 0;
+    _places = {};
+    _vertex = {};
 }
 
 template <typename REAL>
@@ -109,7 +119,14 @@ void BorderEvaluator<REAL>::EvaluateVertex(std::size_t vert, REAL *result) {
 // Returns an item for which a plain face has no rings.
 template <typename REAL>
 CellType::BorderItem const &BorderEvaluator<REAL>::getItem(std::size_t item) {
-    return _plain ? _plain->GetLatticeItem(_turns, item) : _type->GetBorderItem(_turns, item);
+    if (_plain) {
+        return _plain->GetLatticeItem(_turns, item);
+    }
+    KnownItem &known = _items[item];
+    if (known.turn != _turns[item]) {
+        known = {_turns[item], &_type->GetBorderItem(_turns, item)};
+    }
+    return *known.item;
 }
 
 template <typename REAL>
@@ -176,6 +193,11 @@ void BorderEvaluator<REAL>::EvaluateRate(std::size_t edge, int rate, REAL *resul
 // The matrix of a level, or of a rate.
 template <typename REAL>
 PlaceMatrix<REAL> const &BorderEvaluator<REAL>::findPlaces(bool isRate, int level) {
+    PatternTable *const patterns = &getPatterns(*_edge.type, _edge.cell);
+    PatternOf const of = isRate ? PatternOf::BorderRate : PatternOf::Border;
+    if (_places.patterns == patterns && _places.of == of && _places.level == level) {
+        return *_places.matrix;
+    }
     auto const make = [&] {
         return makeMatrix(*_edge.type, _edge.cell,
                           isRate ? makeRatePoints(level) : makeEdgePoints(level));
@@ -183,10 +205,10 @@ PlaceMatrix<REAL> const &BorderEvaluator<REAL>::findPlaces(bool isRate, int leve
     if (isRate && level > kMaxKeptRate) {
         return _placeMatrix = make();
     }
-    return getPatterns(*_edge.type, _edge.cell)
-        .template Get<PlaceMatrix<REAL>>(
-            PatternTable::GetKind<REAL>(isRate ? PatternOf::BorderRate : PatternOf::Border), &level,
-            &level + 1, make);
+    _places = {patterns, of, level,
+               &patterns->Get<PlaceMatrix<REAL>>(PatternTable::GetKind<REAL>(of), &level,
+                                                 &level + 1, make)};
+    return *_places.matrix;
 }
 
 template <typename REAL>
@@ -239,12 +261,16 @@ PlaceMatrix<REAL> BorderEvaluator<REAL>::makeMatrix(CellType const &type, RingCe
 
 template <typename REAL>
 PlaceMatrix<REAL> const &BorderEvaluator<REAL>::findVertex(CellType const &type) {
-    return type.GetPatterns().template Get<PlaceMatrix<REAL>>(
-        PatternTable::GetKind<REAL>(PatternOf::Border), nullptr, nullptr, [&] {
-            PlaceMatrix<REAL> matrix(1, std::size_t(type.GetNumPoints()));
-            matrix.Set(0, type.GetCornerPoints()[0]);
-            return matrix;
-        });
+    if (_vertex.patterns != &type.GetPatterns()) {
+        _vertex.patterns = &type.GetPatterns();
+        _vertex.matrix = &type.GetPatterns().template Get<PlaceMatrix<REAL>>(
+            PatternTable::GetKind<REAL>(PatternOf::Border), nullptr, nullptr, [&] {
+                PlaceMatrix<REAL> matrix(1, std::size_t(type.GetNumPoints()));
+                matrix.Set(0, type.GetCornerPoints()[0]);
+                return matrix;
+            });
+    }
+    return *_vertex.matrix;
 }
 
 template class BorderEvaluator<float>;

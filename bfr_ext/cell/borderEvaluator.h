@@ -6,6 +6,7 @@
 #include "placeKernel.h"
 #include "plainFace.h"
 
+#include <cstdint>
 #include <vector>
 
 namespace OpenSubdivHex::BfrExt::internal {
@@ -65,7 +66,7 @@ private:
         return cell ? cell->GetPatterns() : type.GetPatterns();
     }
     PlaceMatrix<REAL> const &findPlaces(bool isRate, int level);
-    static PlaceMatrix<REAL> const &findVertex(CellType const &type);
+    PlaceMatrix<REAL> const &findVertex(CellType const &type);
     void evaluateInside(std::size_t edge, bool isRate, int level, REAL *results,
                         std::ptrdiff_t stride);
     CellType::BorderItem const &getItem(std::size_t item);
@@ -87,6 +88,22 @@ private:
     std::size_t _edgeNumber = 0;
     Sources _edge = {};
     bool _isReversed = false;
+    // The number of the type of the last face, if it is not plain, and its items: mostly the next face is alike.
+    struct KnownItem {
+        int turn = -1;
+        CellType::BorderItem const *item = nullptr;
+    };
+    std::uint64_t _typeNumber = 0;
+    std::vector<KnownItem> _items;
+    // The matrices of the edge and of the vertex that were last asked for: mostly others of the type are alike.
+    struct Found {
+        PatternTable *patterns;
+        PatternOf of;
+        int level;
+        PlaceMatrix<REAL> const *matrix;
+    };
+    Found _places = {};
+    Found _vertex = {};
     PlaceMatrix<REAL> _placeMatrix; // that is not kept with the type
     std::vector<int> _indices;
     std::vector<REAL> _paddedPoints;

@@ -115,6 +115,11 @@ struct Projection {
     Pair factors[2];
 };
 
+std::uint64_t takeNumber() {
+    static std::atomic<std::uint64_t> last{0};
+    return ++last;
+}
+
 } // namespace
 
 std::size_t GetCellHeapSize(CellPatch const &cell) {
@@ -129,9 +134,10 @@ std::size_t GetCellHeapSize(CellPatch const &cell) {
 }
 
 CellType::CellType(CellTypes &types, CellPatch cell, CellRules const &rules)
-    : _types(types), _cell(std::move(cell)), _numPoints(int(_cell.patch.sources.size())),
-      _isInLattice(isInLattice(_cell.patch)), _isSharp(isSharp(_cell.patch)), _rules(rules),
-      _borderItems(types.GetMemory()), _patterns(types.GetMemory()) {}
+    : _types(types), _number(takeNumber()), _cell(std::move(cell)),
+      _numPoints(int(_cell.patch.sources.size())), _isInLattice(isInLattice(_cell.patch)),
+      _isSharp(isSharp(_cell.patch)), _rules(rules), _borderItems(types.GetMemory()),
+      _patterns(types.GetMemory()) {}
 
 std::vector<CellType::Child> const &CellType::GetChildren() const {
     std::call_once(_onceChildren, [&] {

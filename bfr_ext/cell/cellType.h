@@ -10,6 +10,7 @@
 #include "far_ext/patch/cellPatchPoints.h"
 
 #include <atomic>
+#include <cstdint>
 #include <memory>
 #include <mutex>
 #include <string>
@@ -62,6 +63,8 @@ public:
 
     CellType(CellTypes &types, FarExt::internal::CellPatch cell, CellRules const &rules);
 
+    /// A number that no other type has, nor has had: addresses come again.
+    std::uint64_t GetNumber() const { return _number; }
     FarExt::internal::CellPatch const &GetCell() const { return _cell; }
     /// Whether it has sectors: it is of a base face, or of the F-face that comes of it.
     bool IsWhole() const {
@@ -164,6 +167,7 @@ private:
                                       TURN const &turn) const;
 
     CellTypes &_types;
+    std::uint64_t const _number;
     mutable FarExt::internal::CellPatch _cell; // of vertices, without a patch once it is not needed
     int const _numPoints;
     bool const _isInLattice;
