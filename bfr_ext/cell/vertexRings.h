@@ -123,7 +123,7 @@ private:
     void applySecond(std::size_t ring, REAL const *points, std::size_t paddedSize,
                      REAL *result) const;
     template <std::size_t PADDED_SIZE, typename REAL>
-    void apply(std::size_t ring, REAL const *points, std::size_t paddedSize, REAL *result) const;
+    void apply(std::size_t number, REAL const *points, std::size_t paddedSize, REAL *result) const;
 
     std::size_t _numPoints = 0;
     std::vector<Ring> _rings;
