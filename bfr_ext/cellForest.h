@@ -46,9 +46,13 @@ public:
     /// Base faces and edges are those of SurfaceFactory::GetFaces(), of the surface level, to which it refers and
     /// which the refiner has.
     explicit CellForest(FarExt::TopologyRefiner const &refiner);
+    /// A copy of all trees and polylines.
     CellForest(CellForest const &other);
+    /// \copydoc CellForest(CellForest const &)
     CellForest &operator=(CellForest const &other);
+    /// A forest that was moved from can only be assigned to.
     CellForest(CellForest &&other) noexcept;
+    /// \copydoc CellForest(CellForest &&)
     CellForest &operator=(CellForest &&other) noexcept;
     ~CellForest();
 
@@ -86,11 +90,10 @@ public:
     /// \return  how many they are; 0, with nothing written, where GetNumBoundaryPoints() is above 2^31 - 1
     int GetBoundaryPoints(Index face, int points[]) const;
 
-    /// @name For the library's own use
-    /// @{
+    /// Its data, for the classes of this library.
     internal::ForestData const &GetData() const { return *_data; }
+    /// Its data, for the classes of this library.
     internal::ForestData &GetData() { return *_data; }
-    /// @}
 
 private:
     std::unique_ptr<internal::ForestData> _data;

@@ -174,7 +174,9 @@ public:
     /// Overload with default options.
     PatchStream(SurfaceFactory const &factory, CellForest const &forest)
         : PatchStream(factory, forest, Options()) {}
+    /// Moving copies. Copies share tessellations.
     PatchStream(PatchStream const &) = default;
+    /// \copydoc PatchStream(PatchStream const &)
     PatchStream &operator=(PatchStream const &) = default;
     ~PatchStream() = default;
 

@@ -127,7 +127,9 @@ public:
     /// \param camera   the camera
     /// \param options  how fine cells become
     explicit View(Camera const &camera, Options options = Options());
+    /// Moving copies.
     View(View const &) = default;
+    /// \copydoc View(View const &)
     View &operator=(View const &) = default;
     ~View() = default;
 

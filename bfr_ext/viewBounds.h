@@ -72,7 +72,7 @@ public:
     /// Forgets all.
     void Clear();
 
-    /// For the library's own use.
+    /// Its data, for the classes of this library.
     internal::BoundsData &GetData() { return *_data; }
 
 private:
