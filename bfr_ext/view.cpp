@@ -274,7 +274,7 @@ private:
             for (int corner = 0; corner < _cells[cell].GetType().GetNumCorners(); ++corner) {
                 double du[3];
                 double dv[3];
-                _cells[cell].EvaluateCorner(corner, du, dv);
+                _cells.EvaluateCorner(cell, corner, du, dv);
                 maker.AddNormal(Cross(ToVector3(du), ToVector3(dv)));
             }
             getMeasures(node).facing = int(_measures.facings.size());

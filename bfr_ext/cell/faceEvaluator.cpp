@@ -163,7 +163,7 @@ void FaceEvaluator<REAL>::evaluateTree(TessellationData const &tessellation, REA
     auto const evaluateCorners = [&](int treeCell, std::size_t cell) {
         if (treeCell > 0) { // points on the border are made below
             forEachCornerOf(treeCell, tessellation.tree->corners, [&](auto const &corner) {
-                cells[cell].EvaluateCorner(corner.corner, point.data());
+                cells.EvaluateCorner(cell, corner.corner, point.data());
                 write(corner.place, 0, point.data());
             });
         }

@@ -25,4 +25,14 @@ std::size_t RefinedCells::makeChildren(std::size_t cell) {
     return first;
 }
 
+CellValues const &RefinedCells::findCorner(std::size_t cell, int &corner) {
+    while (!hasCommonType(cell)) {
+        CellValues const &values = _cells[cell].values;
+        CornerChild const next = FindCornerChild(values.GetShape(), corner);
+        corner = next.corner;
+        cell = GetFirstChild(cell) + next.child;
+    }
+    return _cells[cell].values;
+}
+
 } // namespace OpenSubdivHex::BfrExt::internal

@@ -24,6 +24,7 @@ public:
         _size = 0;
         add(1);
         _cells[kBase].values.SetBase(type, controlPoints, length);
+        _firstCommonLevel = type.IsInLattice() ? 0 : kFirstCommonLevel;
     }
 
     CellValues const &operator[](std::size_t cell) const { return _cells[cell].values; }
@@ -34,12 +35,30 @@ public:
     std::size_t GetFirstChild(std::size_t cell) {
         return _cells[cell].firstChild > 0 ? _cells[cell].firstChild : makeChildren(cell);
     }
+    /// \brief Writes the surface at a corner.
+    ///
+    /// Cells whose types few are of have it from their children, so that few limit masks are needed.
+    void EvaluateCorner(std::size_t cell, int corner, double *p) {
+        findCorner(cell, corner).EvaluateCorner(corner, p);
+    }
+    /// Writes derivatives there, which span the tangent plane as those by u and v do.
+    void EvaluateCorner(std::size_t cell, int corner, double *du, double *dv) {
+        findCorner(cell, corner).EvaluateCorner(corner, du, dv);
+    }
+
     /// How many cells there are.
     std::size_t GetSize() const { return _size; }
     /// Drops all cells but so many.  Those that are left are not asked for children that are dropped.
     void Drop(std::size_t size) { _size = size; }
 
+    /// The first level whose cells are of few types, that of a lattice apart: irregular meshes have about as many
+    /// types of base faces and of their children as there are of these.
+    static constexpr int kFirstCommonLevel = 2;
+
 private:
+    // The values of the cell that the corner is evaluated from, and its number there.
+    CellValues const &findCorner(std::size_t cell, int &corner);
+
     struct Cell {
         CellValues values;
         std::size_t firstChild = 0; // 0: not made
@@ -47,9 +66,13 @@ private:
 
     std::size_t add(std::size_t number);
     std::size_t makeChildren(std::size_t cell);
+    bool hasCommonType(std::size_t cell) const {
+        return _cells[cell].values.GetLevel() >= _firstCommonLevel;
+    }
 
     std::deque<Cell> _cells;
     std::size_t _size = 0;
+    int _firstCommonLevel = 0;
 };
 
 } // namespace OpenSubdivHex::BfrExt::internal
