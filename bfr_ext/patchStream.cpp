@@ -68,7 +68,9 @@ public:
     Data(SurfaceFactory const &factory, PatchLevels levels, CellForest const *forest,
          Options const &options)
         : _factory(factory), _levels(std::move(levels)), _forest(forest), _options(options),
-          _plans(makePlans()) {}
+          _plans(std::make_unique<internal::PatchPlans>(
+              internal::PlanOptions{options.GetTessellationOptions(), options.HasDerivatives()},
+              options.GetMaxMemory())) {}
 
     SurfaceFactory const &GetFactory() const { return _factory; }
     PatchLevels const &GetLevels() const { return _levels; }
@@ -89,7 +91,6 @@ private:
     class Worker;
     struct Batch;
 
-    std::shared_ptr<internal::PatchPlans> makePlans() const;
     CallStatus checkRange(Index beginFace, Index endFace, bool *arePlansKept = nullptr) const;
     CallStatus checkFace(Index face, internal::FaceLevels &levels) const;
     CallStatus checkLevels(Index face, internal::FaceLevels const &levels) const;
@@ -106,7 +107,7 @@ private:
     PatchLevels const _levels;
     CellForest const *const _forest; // null: levels
     Options const _options;
-    std::shared_ptr<internal::PatchPlans> _plans;
+    std::unique_ptr<internal::PatchPlans> const _plans;
 };
 
 /// \brief Finds the tessellations of patches, or makes them: each is there until the next one is asked for.
@@ -293,13 +294,6 @@ private:
     std::vector<std::vector<REAL>> _results; // of values
     std::vector<REAL const *> _resultStarts;
 };
-
-template <typename REAL>
-std::shared_ptr<internal::PatchPlans> PatchStream<REAL>::Data::makePlans() const {
-    internal::PlanOptions const options = {_options.GetTessellationOptions(),
-                                           _options.HasDerivatives()};
-    return std::make_shared<internal::PatchPlans>(options, _options.GetMaxMemory());
-}
 
 // The levels of the edges, then that of the inside; none of a forest.
 template <typename REAL>

@@ -163,7 +163,7 @@ public:
         };
         if (meshPointDesc.size == 3) { // by far the most
             gather([](REAL_MESH const *from, REAL *to) {
-                // All before the first is written, which might be one of them: so they are copied at once.
+                // All three are read before one is written: so a compiler may copy them at once.
                 REAL_MESH const numbers[3] = {from[0], from[1], from[2]};
                 to[0] = REAL(numbers[0]);
                 to[1] = REAL(numbers[1]);

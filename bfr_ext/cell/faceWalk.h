@@ -22,13 +22,12 @@ public:
         Index vert;
         Index place; ///< of that vertex in the same face
     };
-    /// The faces of a vertex.
+    /// The faces of a vertex; none where plain faces have no such vertex: at features, and of too few or too many faces.
     struct Fan {
         int GetNumFaces() const { return end - first; }
 
         Index first; ///< place
-        Index
-            end; ///< place; first where plain faces have no such vertex: at features, and of too few or too many faces
+        Index end;   ///< place behind the last
     };
     /// The arrays that the gatherer goes through.
     struct Arrays {

@@ -129,7 +129,7 @@ TEST(ViewBounds, ForestsAreThoseMadeWithoutThem) {
     }
 }
 
-// Tessellations of one stream are not those of another with other facets, nor of other trees.
+// Streams of one forest after the other hand out, to the bit, what the surfaces of faces give.
 TEST(ViewBounds, StreamsOfForestsAreThoseMadeWithoutThem) {
     struct Patches {
         std::map<int, std::vector<double>> points;
