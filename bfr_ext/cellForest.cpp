@@ -153,6 +153,33 @@ LevelTessellation CellForest::GetTessellation(Index face,
     return LevelTessellation(GetTree(face), GetFacePolylines(face).data(), options);
 }
 
+std::vector<CellForest::Index> CellForest::FindChangedFaces(CellForest const &previous) const {
+    bool const isAlike = previous.GetNumFaces() == GetNumFaces() &&
+                         previous._data->polylines.size() == _data->polylines.size();
+    std::vector<char> isChanged(std::size_t(GetNumFaces()), 1);
+    struct Keys {
+        std::vector<int> own;
+        std::vector<int> previous;
+    };
+    FarExt::internal::ParallelForRange(
+        isAlike ? GetNumFaces() : 0, [] { return Keys(); },
+        [&](Keys &keys, Index begin, Index end) {
+            for (Index face = begin; face < end; ++face) {
+                _data->GetKey(face, keys.own);
+                previous._data->GetKey(face, keys.previous);
+                isChanged[std::size_t(face)] = keys.own != keys.previous ? 1 : 0;
+            }
+        },
+        FarExt::internal::kShortParallelRange);
+    std::vector<Index> faces;
+    for (Index face = 0; face < GetNumFaces(); ++face) {
+        if (isChanged[std::size_t(face)]) {
+            faces.push_back(face);
+        }
+    }
+    return faces;
+}
+
 void internal::ForestData::GetKey(Index face, std::vector<int> &key) const {
     CellTree const &tree = GetTree(face);
     key = {tree.GetFaceSize(), tree.GetFaceShape().isHalf ? 1 : 0};

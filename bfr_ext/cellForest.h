@@ -80,6 +80,14 @@ public:
     LevelTessellation
     GetTessellation(Index face,
                     LevelTessellation::Options options = LevelTessellation::Options()) const;
+    /// \brief Finds the faces whose tessellations, GetTessellation(), differ from those in another forest.
+    ///
+    /// Where positions are the same, the points and facets of all other faces are the same, to the bit: a renderer keeps
+    /// them, and takes the patches of these faces from PatchStream::Run().  It uses the threads of FarExt::Executor.
+    ///
+    /// \param previous  of a mesh with the same faces; both after MatchEdges()
+    /// \return          ascending; all faces if \p previous has other counts of faces or edges
+    std::vector<Index> FindChangedFaces(CellForest const &previous) const;
 
     /// Points that faces share, or might share: base vertices and the inner points of edges.
     Number GetNumBoundaryPoints() const;

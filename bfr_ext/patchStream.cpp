@@ -29,6 +29,22 @@ namespace {
 constexpr Far::Index kMaxRange = 128;
 constexpr Far::Index kNumRangesWanted = 64;
 
+/// \brief The faces that a call asks for: a range, or a list that outlives the object.
+class AskedFaces {
+public:
+    AskedFaces(Far::Index begin, Far::Index end) : _begin(begin), _count(end - begin) {}
+    explicit AskedFaces(std::vector<Far::Index> const &list)
+        : _list(list.data()), _count(Far::Index(list.size())) {}
+
+    Far::Index GetCount() const { return _count; }
+    Far::Index operator[](Far::Index i) const { return _list ? _list[i] : _begin + i; }
+
+private:
+    Far::Index const *_list = nullptr; // null: a range
+    Far::Index _begin = 0;
+    Far::Index _count;
+};
+
 /// \brief The points of some vertices of the mesh, each made by the first face that asked for it.
 ///
 /// Plain faces make the same point of a vertex that they share, to the bit.
@@ -78,8 +94,10 @@ public:
     Options const &GetOptions() const { return _options; }
 
     bool Run(REAL const meshPoints[], PointDescriptor const &meshPointDesc,
-             std::vector<Values> const &values, Index beginFace, Index endFace, Sink const &sink,
+             std::vector<Values> const &values, AskedFaces const &faces, Sink const &sink,
              CallStatus *status) const;
+    CallStatus CheckRange(Index beginFace, Index endFace) const;
+    CallStatus CheckList(std::vector<Index> const &faces) const;
     bool RunTessellations(TessellationSink const &sink, CallStatus *status) const;
     int GetNumSections(Index face) const;
     LevelTessellation MakeTessellation(Index face) const;
@@ -91,16 +109,16 @@ private:
     class Worker;
     struct Batch;
 
-    CallStatus checkRange(Index beginFace, Index endFace, bool *arePlansKept = nullptr) const;
+    CallStatus checkFaces(AskedFaces const &faces, bool *arePlansKept) const;
     CallStatus checkFace(Index face, internal::FaceLevels &levels) const;
     CallStatus checkLevels(Index face, internal::FaceLevels const &levels) const;
     CallStatus checkTree(Index face) const;
     void getLevels(Index face, internal::FaceLevels &levels) const;
     bool isCut(Index face, internal::FaceLevels const &levels) const;
     std::unique_ptr<internal::FaceSections const> makeSections(Index face) const;
-    Index takeFaces(Index beginFace, Index endFace, Batch &batch) const;
+    Index takeFaces(AskedFaces const &faces, Index next, Batch &batch) const;
     template <typename MAKE>
-    bool runWorkers(Index beginFace, Index endFace, bool arePlansKept, MAKE const &makeWorker,
+    bool runWorkers(AskedFaces const &faces, bool arePlansKept, MAKE const &makeWorker,
                     CallStatus &status) const;
 
     SurfaceFactory const &_factory;
@@ -372,10 +390,11 @@ struct PatchStream<REAL>::Data::Batch {
     Index numPatches = 0;
 };
 
-// Takes the next faces that are no holes, of a stream whose plans do not all fit in memory; where not all
+// Takes faces from number next on that are no holes, of a stream whose plans do not all fit in memory; where not all
 // of theirs do, faces with the same levels stand side by side.
 template <typename REAL>
-Far::Index PatchStream<REAL>::Data::takeFaces(Index beginFace, Index endFace, Batch &batch) const {
+Far::Index PatchStream<REAL>::Data::takeFaces(AskedFaces const &faces, Index next,
+                                              Batch &batch) const {
     constexpr std::size_t kMinNumFaces = 1024;
     constexpr std::size_t kShareOfMemory = 16;
     constexpr double kMaxLeaves = 1 << 30;
@@ -390,23 +409,24 @@ Far::Index PatchStream<REAL>::Data::takeFaces(Index beginFace, Index endFace, Ba
     std::unordered_set<std::size_t> hashes;
     std::size_t memory = 0;
     double numLeaves = 0; // at least as many as patches
-    for (; beginFace < endFace && order.size() < numFaces && numLeaves < kMaxLeaves; ++beginFace) {
-        if (_factory.GetFaces().IsHole(beginFace)) {
+    for (; next < faces.GetCount() && order.size() < numFaces && numLeaves < kMaxLeaves; ++next) {
+        Index const face = faces[next];
+        if (_factory.GetFaces().IsHole(face)) {
             continue;
         }
         if (_forest) {
-            order.push_back({0, beginFace});
-            numLeaves += _forest->GetTree(beginFace).GetNumLeaves();
+            order.push_back({0, face});
+            numLeaves += _forest->GetTree(face).GetNumLeaves();
             continue;
         }
-        getLevels(beginFace, levels);
+        getLevels(face, levels);
         numLeaves += internal::FaceSections::CountLeaves(levels);
         std::size_t hash = levels.shape.isHalf ? 1 : 0;
         for (int const level : levels.levels) {
             hash = (hash ^ std::size_t(level + 1)) * 0x9e3779b97f4a7c15;
             hash ^= hash >> 29;
         }
-        order.push_back({hash, beginFace});
+        order.push_back({hash, face});
         if (memory <= _plans->GetMaxMemory() && hashes.insert(hash).second) {
             memory += _plans->GetSizeOfMaking(levels);
         }
@@ -432,7 +452,7 @@ Far::Index PatchStream<REAL>::Data::takeFaces(Index beginFace, Index endFace, Ba
         }
         batch.Add(levelsOfFace.face, numSections, isOfLastGroup);
     }
-    return beginFace;
+    return next;
 }
 
 template <typename REAL>
@@ -462,17 +482,32 @@ LevelTessellation PatchStream<REAL>::Data::MakeTessellation(Index face) const {
                              levels.levels.data(), _options.GetTessellationOptions());
 }
 
+template <typename REAL>
+CallStatus PatchStream<REAL>::Data::CheckRange(Index beginFace, Index endFace) const {
+    int const numFaces = _factory.GetNumFaces();
+    return 0 <= beginFace && beginFace <= endFace && endFace <= numFaces
+               ? CallStatus()
+               : FarExt::internal::Failure(StatusCode::InvalidArgument,
+                                           "faces " + std::to_string(beginFace) + " to " +
+                                               std::to_string(endFace) + " are no range of the " +
+                                               std::to_string(numFaces) + " of the mesh");
+}
+
+template <typename REAL>
+CallStatus PatchStream<REAL>::Data::CheckList(std::vector<Index> const &faces) const {
+    int const numFaces = _factory.GetNumFaces();
+    auto const bad = std::find_if(faces.begin(), faces.end(),
+                                  [&](Index face) { return face < 0 || face >= numFaces; });
+    return bad == faces.end() ? CallStatus()
+                              : CallStatus(StatusCode::InvalidArgument, ComponentType::Face, *bad,
+                                           "face " + std::to_string(*bad) + " is none of the " +
+                                               std::to_string(numFaces) + " of the mesh");
+}
+
 // The status names the first wrong face, whichever thread finds it.
 template <typename REAL>
-CallStatus PatchStream<REAL>::Data::checkRange(Index beginFace, Index endFace,
-                                               bool *arePlansKept) const {
+CallStatus PatchStream<REAL>::Data::checkFaces(AskedFaces const &faces, bool *arePlansKept) const {
     FarExt::SurfaceFaces const &base = _factory.GetFaces();
-    if (beginFace < 0 || endFace < beginFace || endFace > base.GetNumFaces()) {
-        return FarExt::internal::Failure(StatusCode::InvalidArgument,
-                                         "faces " + std::to_string(beginFace) + " to " +
-                                             std::to_string(endFace) + " are no range of the " +
-                                             std::to_string(base.GetNumFaces()) + " of the mesh");
-    }
     constexpr int kTriangle = 3;
     if (!LevelTessellation(Parameterization(kTriangle), 0, _options.GetTessellationOptions())
              .IsValid()) {
@@ -496,19 +531,20 @@ CallStatus PatchStream<REAL>::Data::checkRange(Index beginFace, Index endFace,
         internal::FaceLevels levels;
     };
     internal::PlanMemory memory(*_plans);
-    std::atomic<Index> firstBad(endFace);
+    std::atomic<Index> firstBad(faces.GetCount());
     CallStatus result;
     std::mutex mutex;
     auto const check = [&](Checker &checker, Index begin, Index end) {
-        for (Index face = beginFace + begin; face < beginFace + end && face < firstBad; ++face) {
+        for (Index i = begin; i < end && i < firstBad; ++i) {
+            Index const face = faces[i];
             if (base.IsHole(face)) {
                 continue;
             }
             CallStatus status = checkFace(face, checker.levels);
             if (!status.IsOk()) {
                 std::lock_guard<std::mutex> const lock(mutex);
-                if (face < firstBad) {
-                    firstBad = face;
+                if (i < firstBad) {
+                    firstBad = i;
                     result = std::move(status);
                 }
                 return;
@@ -521,14 +557,12 @@ CallStatus PatchStream<REAL>::Data::checkRange(Index beginFace, Index endFace,
         }
     };
     FarExt::internal::ParallelForRange(
-        endFace - beginFace,
+        faces.GetCount(),
         [&] {
             return Checker{internal::PlanMemory::Counter(memory), {}};
         },
         check, FarExt::internal::kShortParallelRange);
-    if (arePlansKept) {
-        *arePlansKept = memory.HasRoom();
-    }
+    *arePlansKept = memory.HasRoom();
     return result;
 }
 
@@ -583,11 +617,11 @@ CallStatus PatchStream<REAL>::Data::checkLevels(Index face,
 // Has workers, each of which makeWorker() gives, make the patches of faces; false where one gave false.
 template <typename REAL>
 template <typename MAKE>
-bool PatchStream<REAL>::Data::runWorkers(Index beginFace, Index endFace, bool arePlansKept,
+bool PatchStream<REAL>::Data::runWorkers(AskedFaces const &faces, bool arePlansKept,
                                          MAKE const &makeWorker, CallStatus &status) const {
     std::atomic<bool> isEnded(false);
     std::mutex mutex;
-    Index const length = std::min(std::max((endFace - beginFace) / kNumRangesWanted, 1), kMaxRange);
+    Index const length = std::min(std::max(faces.GetCount() / kNumRangesWanted, 1), kMaxRange);
     // Hands out patches getPatch(0) ... getPatch(count - 1), where their faces are no holes.
     auto const run = [&](Index count, auto const &getPatch) {
         using PatchOfFace = typename Batch::PatchOfFace;
@@ -612,13 +646,11 @@ bool PatchStream<REAL>::Data::runWorkers(Index beginFace, Index endFace, bool ar
             length);
     };
     if (arePlansKept) {
-        run(endFace - beginFace, [&](Index i) {
-            return typename Batch::PatchOfFace{beginFace + i, -1};
-        });
+        run(faces.GetCount(), [&](Index i) { return typename Batch::PatchOfFace{faces[i], -1}; });
     }
     Batch batch;
-    while (!arePlansKept && beginFace < endFace && !isEnded) {
-        beginFace = takeFaces(beginFace, endFace, batch);
+    for (Index next = 0; !arePlansKept && next < faces.GetCount() && !isEnded;) {
+        next = takeFaces(faces, next, batch);
         run(batch.numPatches, [&](Index i) { return batch.Get(i); });
     }
     _plans->Trim();
@@ -627,10 +659,10 @@ bool PatchStream<REAL>::Data::runWorkers(Index beginFace, Index endFace, bool ar
 
 template <typename REAL>
 bool PatchStream<REAL>::Data::Run(REAL const meshPoints[], PointDescriptor const &meshPointDesc,
-                                  std::vector<Values> const &values, Index beginFace, Index endFace,
+                                  std::vector<Values> const &values, AskedFaces const &faces,
                                   Sink const &sink, CallStatus *status) const {
     bool arePlansKept = false;
-    CallStatus result = checkRange(beginFace, endFace, &arePlansKept);
+    CallStatus result = checkFaces(faces, &arePlansKept);
     for (Values const &further : values) {
         if (result.IsOk() && further.channel != Values::kVarying) {
             result = FarExt::internal::CheckChannel(further.channel, _factory.GetNumFVarChannels());
@@ -640,7 +672,7 @@ bool PatchStream<REAL>::Data::Run(REAL const meshPoints[], PointDescriptor const
         return false;
     }
     bool const isDone = runWorkers(
-        beginFace, endFace, arePlansKept,
+        faces, arePlansKept,
         [&] { return std::make_unique<Worker>(*this, meshPoints, meshPointDesc, values, sink); },
         result);
     FarExt::internal::Report(result, status);
@@ -650,9 +682,9 @@ bool PatchStream<REAL>::Data::Run(REAL const meshPoints[], PointDescriptor const
 template <typename REAL>
 bool PatchStream<REAL>::Data::RunTessellations(TessellationSink const &sink,
                                                CallStatus *status) const {
-    Index const numFaces = _factory.GetNumFaces();
+    AskedFaces const faces(0, _factory.GetNumFaces());
     bool arePlansKept = false;
-    CallStatus result = checkRange(0, numFaces, &arePlansKept);
+    CallStatus result = checkFaces(faces, &arePlansKept);
     if (!FarExt::internal::Report(result, status)) {
         return false;
     }
@@ -665,7 +697,7 @@ bool PatchStream<REAL>::Data::RunTessellations(TessellationSink const &sink,
         TessellationSink const &sink;
     };
     return runWorkers(
-        0, numFaces, arePlansKept,
+        faces, arePlansKept,
         [&] {
             return std::unique_ptr<Finder>(new Finder{TessellationFinder(*this), sink});
         },
@@ -710,7 +742,20 @@ template <typename REAL>
 bool PatchStream<REAL>::Run(REAL const meshPoints[], PointDescriptor const &meshPointDesc,
                             std::vector<Values> const &values, Index beginFace, Index endFace,
                             Sink const &sink, CallStatus *status) const {
-    return _data->Run(meshPoints, meshPointDesc, values, beginFace, endFace, sink, status);
+    CallStatus const result = _data->CheckRange(beginFace, endFace);
+    return result.IsOk() ? _data->Run(meshPoints, meshPointDesc, values,
+                                      AskedFaces(beginFace, endFace), sink, status)
+                         : FarExt::internal::Report(result, status);
+}
+
+template <typename REAL>
+bool PatchStream<REAL>::Run(REAL const meshPoints[], PointDescriptor const &meshPointDesc,
+                            std::vector<Values> const &values, std::vector<Index> const &faces,
+                            Sink const &sink, CallStatus *status) const {
+    CallStatus const result = _data->CheckList(faces);
+    return result.IsOk()
+               ? _data->Run(meshPoints, meshPointDesc, values, AskedFaces(faces), sink, status)
+               : FarExt::internal::Report(result, status);
 }
 
 template <typename REAL>

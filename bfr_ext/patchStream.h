@@ -208,6 +208,13 @@ public:
     bool Run(REAL const meshPoints[], PointDescriptor const &meshPointDesc,
              std::vector<Values> const &values, Index beginFace, Index endFace, Sink const &sink,
              FarExt::CallStatus *status = nullptr) const;
+    /// \brief Overload for a list of faces, in any order: CellForest::FindChangedFaces() has those that a camera changes.
+    ///
+    /// A face that is listed twice has its patches twice.
+    /// \return  false, with InvalidArgument, for a number that is no face, too
+    bool Run(REAL const meshPoints[], PointDescriptor const &meshPointDesc,
+             std::vector<Values> const &values, std::vector<Index> const &faces, Sink const &sink,
+             FarExt::CallStatus *status = nullptr) const;
 
     /// The number of patches of a face: 1, or its sections.  The face is in range, and its levels or tree are valid.
     int GetNumSections(Index face) const;

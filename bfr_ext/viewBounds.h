@@ -25,8 +25,7 @@ struct BoundsData;
 /// the last cell, with and without.
 ///
 /// **Memory** is Options::SetMaxMemory(), and three doubles for each vertex of the mesh.  Each cell that a view asked for
-/// takes about 64 bytes; for culling, 72 more.  Each view measures anew the cells for which there is no room.  In addition,
-/// the tessellations that the PatchStream of the last forest keeps are kept, for the next forest.
+/// takes about 64 bytes; for culling, 72 more.  Each view measures anew the cells for which there is no room.
 ///
 /// One thread at a time may use it; View::MakeForest() has threads of its own.  std::bad_alloc passes
 /// through.

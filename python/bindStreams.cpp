@@ -130,6 +130,11 @@ public:
         });
         return TakeOver(std::move(points));
     }
+    py::array_t<int> FindChangedFaces(Forest const &previous) const {
+        return TakeOver(_factory->Read([&](BfrExt::SurfaceFactory const &) {
+            return _forest.FindChangedFaces(previous._forest);
+        }));
+    }
 
 private:
     std::shared_ptr<FaceSurfaceFactory const> _factory;
@@ -402,7 +407,8 @@ public:
     int GetNumFaces() const { return _factory->GetNumFaces(); }
 
     bool Run(py::object const &points, py::object const &sink, py::object const &varying,
-             py::object const &fvarValues, int beginFace, std::optional<int> endFace) const {
+             py::object const &fvarValues, int beginFace, std::optional<int> endFace,
+             py::object const &faces) const {
         if (!PyCallable_Check(sink.ptr())) {
             throw py::type_error(std::string("sink: a function of a patch is needed, not ") +
                                  Py_TYPE(sink.ptr())->tp_name);
@@ -410,7 +416,7 @@ public:
         auto const run = [&](auto real) {
             using REAL = decltype(real);
             auto const sources = takeSources<REAL>(points, varying, fvarValues);
-            return runStream<REAL>(sources, beginFace, endFace, [&](auto const &patch) {
+            return runStream<REAL>(sources, beginFace, endFace, faces, [&](auto const &patch) {
                 py::gil_scoped_acquire const acquire;
                 py::object const answer = sink(showPatch<REAL>(sources, patch));
                 if (!answer.is_none() && !py::isinstance<py::bool_>(answer)) {
@@ -424,13 +430,13 @@ public:
     }
 
     py::dict Evaluate(py::object const &points, py::object const &varying,
-                      py::object const &fvarValues, int beginFace,
-                      std::optional<int> endFace) const {
+                      py::object const &fvarValues, int beginFace, std::optional<int> endFace,
+                      py::object const &faces) const {
         auto const run = [&](auto real) {
             using REAL = decltype(real);
             auto const sources = takeSources<REAL>(points, varying, fvarValues);
             PatchCollection<REAL> patches(sources, _hasDerivatives);
-            runStream<REAL>(sources, beginFace, endFace, [&](auto const &patch) {
+            runStream<REAL>(sources, beginFace, endFace, faces, [&](auto const &patch) {
                 patches.Add(patch);
                 return true;
             });
@@ -521,12 +527,21 @@ private:
     /// Runs the stream without the interpreter's lock.  The refiner's is not held, since sinks call Python.
     template <typename REAL, typename SINK>
     bool runStream(StreamSources<REAL> const &sources, int beginFace, std::optional<int> endFace,
-                   SINK const &sink) const {
+                   py::object const &listedFaces, SINK const &sink) const {
         int const end = endFace.value_or(GetNumFaces());
         if (beginFace < 0 || beginFace > end || end > GetNumFaces()) {
             throw py::index_error("begin_face, end_face: " + std::to_string(beginFace) + " ... " +
                                   std::to_string(end) + " is no range of the " +
                                   std::to_string(GetNumFaces()) + " faces");
+        }
+        std::vector<int> list;
+        bool const isListed = !listedFaces.is_none();
+        if (isListed && (beginFace != 0 || endFace)) {
+            throw py::value_error("faces: no begin_face and end_face beside them");
+        }
+        if (isListed) {
+            py::array_t<int> const numbers = TakeIndices(listedFaces, "faces");
+            list.assign(numbers.data(), numbers.data() + numbers.size());
         }
         Refiner::Hold const hold = _factory->HoldLevels();
         _factory->Read([](BfrExt::SurfaceFactory const &) {}); // raises where it is out of date
@@ -534,9 +549,12 @@ private:
         bool isComplete = false;
         {
             py::gil_scoped_release const release;
-            isComplete = std::get<StreamPointer<REAL>>(_streams)->Run(
-                sources.points.data, sources.GetPointDescriptor(), sources.values, beginFace, end,
-                sink, &status);
+            BfrExt::PatchStream<REAL> const &stream = *std::get<StreamPointer<REAL>>(_streams);
+            auto const run = [&](auto const &...faces) {
+                return stream.Run(sources.points.data, sources.GetPointDescriptor(), sources.values,
+                                  faces..., sink, &status);
+            };
+            isComplete = isListed ? run(list) : run(beginFace, end);
         }
         RaiseUnlessOk(status);
         return isComplete;
@@ -654,7 +672,15 @@ void bindViews(py::module_ &module) {
              "int32: for each point on the boundary of a face, in the order of its tessellation's\n"
              "coords, the index among the num_boundary_points.  Faces that share a point have the\n"
              "same index for it.",
-             py::arg("face"));
+             py::arg("face"))
+        .def("find_changed_faces", &Forest::FindChangedFaces,
+             "find_changed_faces(previous)\n\n"
+             "int32, ascending: the faces whose tessellations differ from those in another forest "
+             "of the mesh.\n"
+             "Where positions are the same, all other faces have the same patches, to the bit.  "
+             "PatchStream\n"
+             "takes them as faces.",
+             py::arg("previous").none(false));
 
     py::class_<Bounds>(
         module, "ViewBounds",
@@ -789,8 +815,10 @@ void BindStreams(py::module_ &module) {
              py::arg("max_memory") = BfrExt::PatchStream<float>::Options().GetMaxMemory())
         .def_property_readonly("num_faces", &Stream::GetNumFaces, "Faces of the mesh.")
         .def("run", &Stream::Run,
-             "run(points, sink, *, varying=None, fvar_values=None, begin_face=0, end_face=None)\n\n"
-             "Calls sink(patch) with the Patch of each face begin_face ... end_face - 1.\n\n"
+             "run(points, sink, *, varying=None, fvar_values=None, begin_face=0, end_face=None,\n"
+             "    faces=None)\n\n"
+             "Calls sink(patch) with the Patch of each face begin_face ... end_face - 1, or of "
+             "faces.\n\n"
              "Args:\n"
              "    points: positions of the mesh, shape (points,) or (points, length): float32 and\n"
              "        float64 are read in place, and results have the same type\n"
@@ -800,17 +828,19 @@ void BindStreams(py::module_ &module) {
              "exception of\n"
              "        the sink ends the stream, and run() raises it\n"
              "    varying: varying data of the mesh, shape (points, length), or None\n"
-             "    fvar_values: a list of arrays, the values of the first channels\n\n"
+             "    fvar_values: a list of arrays, the values of the first channels\n"
+             "    faces: numbers of faces, in place of begin_face and end_face\n\n"
              "Returns True, or False if the sink ended the stream.  Raises StatusError for a face "
              "without a\n"
              "surface, unless it is a hole.",
              py::arg("points"), py::arg("sink"), py::kw_only(), py::arg("varying") = py::none(),
              py::arg("fvar_values") = py::none(), py::arg("begin_face") = 0,
-             py::arg("end_face") = py::none())
+             py::arg("end_face") = py::none(), py::arg("faces") = py::none())
         .def(
             "evaluate", &Stream::Evaluate,
-            "evaluate(points, *, varying=None, fvar_values=None, begin_face=0, end_face=None)\n\n"
-            "The patches of faces begin_face ... end_face - 1 in ascending order, as arrays.  "
+            "evaluate(points, *, varying=None, fvar_values=None, begin_face=0, end_face=None,\n"
+            "    faces=None)\n\n"
+            "The patches of these faces in ascending order, as arrays.  "
             "Takes twice the\n"
             "memory of the result: for large meshes evaluate some faces at a time.  Arguments are "
             "those of\n"
@@ -827,7 +857,7 @@ void BindStreams(py::module_ &module) {
             "    'facet_sizes': int32, for polygons, or None",
             py::arg("points"), py::kw_only(), py::arg("varying") = py::none(),
             py::arg("fvar_values") = py::none(), py::arg("begin_face") = 0,
-            py::arg("end_face") = py::none());
+            py::arg("end_face") = py::none(), py::arg("faces") = py::none());
 }
 
 } // namespace OpenSubdivHex::Python

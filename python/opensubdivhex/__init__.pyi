@@ -452,6 +452,7 @@ class CellForest:
         facet_size: Literal[0, 3, 4] = 3,
     ) -> LevelTessellation: ...
     def boundary_points(self, face: int) -> NDArray[np.int32]: ...
+    def find_changed_faces(self, previous: CellForest) -> NDArray[np.int32]: ...
 
 class Patch:
     @property
@@ -490,6 +491,7 @@ class PatchStream:
         fvar_values: Sequence[ArrayLike] | None = None,
         begin_face: int = 0,
         end_face: int | None = None,
+        faces: ArrayLike | None = None,
     ) -> bool: ...
     def evaluate(
         self,
@@ -499,6 +501,7 @@ class PatchStream:
         fvar_values: Sequence[ArrayLike] | None = None,
         begin_face: int = 0,
         end_face: int | None = None,
+        faces: ArrayLike | None = None,
     ) -> dict[str, Any]: ...
 
 class TopologyLevel:

@@ -81,6 +81,11 @@ def test_ranges_and_threads_make_the_same_bits(factory):
             again = stream.evaluate(CUBE_POSITIONS)
         assert again["points"].tobytes() == whole["points"].tobytes()
         assert again["facets"].tobytes() == whole["facets"].tobytes()
+    listed = stream.evaluate(CUBE_POSITIONS, faces=[5, 1])
+    assert listed["faces"].tolist() == [1, 5]
+    points = slice(*whole["first_points"][1:3])
+    assert listed["points"][:points.stop - points.start].tobytes() == whole["points"][points].tobytes()
+    assert len(stream.evaluate(CUBE_POSITIONS, faces=[])["faces"]) == 0
     empty = stream.evaluate(CUBE_POSITIONS, begin_face=3, end_face=3)
     assert empty["points"].shape == (0, 3) and empty["facets"].shape == (0, 3)
     assert empty["first_points"].tolist() == [0]
@@ -219,7 +224,9 @@ def test_arguments_of_streams_are_named(factory):
             (TypeError, "fvar_values: a list of arrays is needed", dict(fvar_values=3)),
             (IndexError, "begin_face, end_face: 4 ... 3 is no range of the 6 faces",
              dict(begin_face=4, end_face=3)),
-            (IndexError, "begin_face, end_face: 0 ... 7 is no range", dict(end_face=7))]:
+            (IndexError, "begin_face, end_face: 0 ... 7 is no range", dict(end_face=7)),
+            (ValueError, "faces: no begin_face and end_face", dict(faces=[1], begin_face=1)),
+            (osh.StatusError, "face 6 is none of the 6 of the mesh", dict(faces=[1, 6]))]:
         with pytest.raises(error, match=message):
             stream.evaluate(**{"points": CUBE_POSITIONS, **arguments})
     with pytest.raises(TypeError, match="sink: a function of a patch is needed, not int"):
@@ -251,6 +258,11 @@ def test_views_refine_what_is_near():
     near = osh.View(osh.Camera((5, 0, 1)), flatness=0.5).make_forest(factory, positions)
     far = osh.View(osh.Camera((50, 0, 10)), flatness=0.5).make_forest(factory, positions)
     coarse = osh.View(osh.Camera((5, 0, 1)), flatness=8).make_forest(factory, positions)
+    assert near.find_changed_faces(near).tolist() == []
+    changed = near.find_changed_faces(coarse).tolist()
+    assert changed and changed == sorted(set(changed))
+    with pytest.raises(TypeError):
+        near.find_changed_faces(None)
     assert near.num_cells > far.num_cells and near.num_cells > coarse.num_cells
     assert near.num_cells == sum(near.cells_by_level) > near.num_faces == len(faces)
     culled = osh.View(osh.Camera((5, 0, 1)), culling=True).make_forest(factory, positions)

@@ -20,6 +20,7 @@
 #include <atomic>
 #include <map>
 #include <mutex>
+#include <numeric>
 #include <stdexcept>
 
 namespace OpenSubdivHex::Regression::patchStreamTest {
@@ -155,9 +156,14 @@ TEST(PatchStreamTest, PatchesDoNotDependOnThreadsMemoryAndShares) {
                                            numFaces * (share + 1) / numShares,
                                            collection.GetSink()));
                 }
+                std::vector<int> faces(static_cast<std::size_t>(numFaces));
+                std::iota(faces.rbegin(), faces.rend(), 0);
+                Collection<float> listed;
+                ASSERT_TRUE(stream.Run(positions.data(), 3, {}, faces, listed.GetSink()));
                 if (expected.empty()) {
                     expected = collection.patches;
                 }
+                ASSERT_EQ(listed.patches, expected) << numThreads << " threads, " << memory;
                 ASSERT_EQ(collection.patches, expected)
                     << numThreads << " threads, " << memory << " bytes, " << numShares << " shares";
             }
@@ -350,6 +356,15 @@ TEST(PatchStreamTest, RefusesBeforeAnythingIsHandedOut) {
     EXPECT_FALSE(run(PatchLevels(1), 0, 1, 5));
     EXPECT_EQ(status.GetCode(), StatusCode::InvalidArgument);
     EXPECT_TRUE(run(PatchLevels(1), 0, 0, 3));
+    EXPECT_EQ(numPatches, 0);
+    PatchStream<double> const stream(*factory, PatchLevels(1));
+    for (int const noFace : {-1, 1}) {
+        EXPECT_FALSE(stream.Run(shape.positions.data(), 3, {}, {0, noFace}, sink, &status));
+        EXPECT_EQ(status.GetErrorMessage(),
+                  "face " + std::to_string(noFace) + " is none of the 1 of the mesh");
+        EXPECT_EQ(status.GetComponentIndex(), noFace);
+    }
+    EXPECT_TRUE(stream.Run(shape.positions.data(), 3, {}, std::vector<int>(), sink, &status));
     EXPECT_EQ(numPatches, 0);
 
     auto const free = CreateRefiner(shape, ReferenceMask::Smooth, 0, Sdc::Options());

@@ -13,8 +13,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <map>
+#include <mutex>
 #include <random>
 
 namespace OpenSubdivHex::Regression::viewBoundsTest {
@@ -184,6 +186,74 @@ TEST(ViewBounds, StreamsOfForestsAreThoseMadeWithoutThem) {
             EXPECT_EQ(patches.facets, expectedPatches.facets) << "view " << i;
         }
     }
+}
+
+// Frame by frame, the patches of the faces that change make the picture that a whole stream makes.
+TEST(ViewBounds, FacesThatChangeMakeTheNextPicture) {
+    using Stream = BfrExt::PatchStream<double>;
+    using Picture = std::map<int, std::pair<std::vector<double>, std::vector<int>>>;
+    std::size_t numKept = 0;
+    for (Shape const &shape : getShapes()) {
+        SCOPED_TRACE(shape.name);
+        Scene scene(shape);
+        std::mutex mutex;
+        auto const makeSink = [&](Picture &picture) {
+            return [&](Stream::Patch const &patch) {
+                std::lock_guard<std::mutex> const lock(mutex);
+                auto &[points, facets] = picture[patch.face];
+                points.assign(patch.points, patch.points + 3 * patch.tessellation.GetNumCoords());
+                facets.resize(std::size_t(patch.tessellation.GetNumFacets() *
+                                          patch.tessellation.GetFacetSize()));
+                patch.tessellation.GetFacets(facets.data());
+                return true;
+            };
+        };
+        ViewBounds bounds(*scene.factory);
+        CellForest last(*scene.refiner);
+        last.MatchEdges();
+        Picture picture;
+        ASSERT_TRUE(Stream(*scene.factory, last).Run(scene.positions.data(), 3, makeSink(picture)));
+        Camera camera;
+        for (int i = 0; i < 6; ++i) {
+            if (i % 2 == 0) { // every other camera stays where it is
+                camera = scene.MakeCamera();
+            }
+            View const view(camera, View::Options().SetFlatness(6).SetMaxLevel(4));
+            CellForest const forest = view.MakeForest(bounds, scene.positions.data(), 3);
+            Stream const stream(*scene.factory, forest);
+            std::vector<int> const changed = forest.FindChangedFaces(last);
+            EXPECT_TRUE(i % 2 == 0 || changed.empty()) << "view " << i;
+            EXPECT_TRUE(std::is_sorted(changed.begin(), changed.end()));
+            numKept += std::size_t(forest.GetNumFaces()) - changed.size();
+            ASSERT_TRUE(stream.Run(scene.positions.data(), 3, {}, changed, makeSink(picture)));
+            Picture whole;
+            ASSERT_TRUE(stream.Run(scene.positions.data(), 3, makeSink(whole)));
+            EXPECT_EQ(picture, whole) << "view " << i;
+            last = forest;
+        }
+    }
+    EXPECT_GT(numKept, std::size_t(0));
+}
+
+// A neighbour changes with the edge that they share; other meshes share nothing.
+TEST(ViewBounds, ANeighbourOfARefinedFaceChanges) {
+    Scene const scene(GetShape("torus"));
+    CellForest const coarse(*scene.refiner);
+    CellForest refined = coarse;
+    CellTree tree(scene.factory->GetFaces().GetShape(3));
+    tree.Refine(tree.Refine(0) + 1); // the half cell at edge 0
+    refined.SetTree(3, tree);
+    refined.MatchEdges();
+    FarExt::SurfaceFaces const faces = scene.factory->GetFaces();
+    std::vector<int> expected = {3};
+    FarExt::SurfaceFaces::Edge const edge = faces.GetEdge(3, 0);
+    expected.push_back(faces.GetSide(edge.edge, edge.isReversed ? 0 : 1).face);
+    std::sort(expected.begin(), expected.end());
+    EXPECT_EQ(refined.FindChangedFaces(coarse), expected);
+    EXPECT_EQ(coarse.FindChangedFaces(refined), expected);
+    Scene const other(GetShape("cube"));
+    EXPECT_EQ(int(refined.FindChangedFaces(CellForest(*other.refiner)).size()),
+              refined.GetNumFaces());
 }
 
 // If one vertex of a mesh moves, faces elsewhere need nothing new.

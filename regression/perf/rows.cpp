@@ -114,6 +114,10 @@ std::vector<Row> const &GetRows() {
         result.push_back({"view-bounds",
                           "surfaces for a further camera, bounds kept, with their points, 1 thread",
                           "own, uniform level that is as close", 1, 4});
+        result.push_back({"view-next",
+                          "surfaces for a further camera, bounds kept, with points of faces that "
+                          "change, 1 thread",
+                          "own, uniform level that is as close", 5, 10});
         // Types at such a vertex have all of its faces in them.
         result.push_back({"view-pole",
                           "surfaces for a camera, 64 differently sharp edges at a vertex, empty "

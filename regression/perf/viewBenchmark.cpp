@@ -65,15 +65,12 @@ struct Workspace {
 
     /// Hands the triangles with their points to a sink that looks at one number of each patch.
     double Stream(BfrExt::PatchStream<float> const &stream) const {
-        std::atomic<bool> isFinite(true);
-        bool const isDone = stream.Run(positions.data(), 3, [&](auto const &patch) {
-            if (!std::isfinite(patch.points[0])) {
-                isFinite = false;
-            }
-            return true;
-        });
-        Require(isDone && isFinite, "no stream");
-        return 1;
+        return take([&](auto const &sink) { return stream.Run(positions.data(), 3, sink); });
+    }
+    /// Those of some faces.
+    double Stream(BfrExt::PatchStream<float> const &stream, std::vector<int> const &faces) const {
+        return take(
+            [&](auto const &sink) { return stream.Run(positions.data(), 3, {}, faces, sink); });
     }
 
     static constexpr double kPixels = 0.5;
@@ -84,6 +81,20 @@ struct Workspace {
     BfrExt::Camera camera;
     BfrExt::View view = BfrExt::View(BfrExt::Camera());
     int level = 0; ///< of the finest cells
+
+private:
+    template <typename RUN>
+    static double take(RUN const &run) {
+        std::atomic<bool> isFinite(true);
+        bool const isDone = run([&](auto const &patch) {
+            if (!std::isfinite(patch.points[0])) {
+                isFinite = false;
+            }
+            return true;
+        });
+        Require(isDone && isFinite, "no stream");
+        return 1;
+    }
 };
 
 /// \param work  gives what it is per
@@ -115,14 +126,26 @@ Contest makeContest(BenchMesh const &mesh) {
         makeContestant("BfrExt::PatchStream", [=] { return workspace->Stream(*uniform); }));
     // Cameras go around, so that none finds what is known for it.
     auto const numViews = std::make_shared<int>(0);
-    contest.contestants.push_back(makeContestant("BfrExt::ViewBounds, points", [=] {
+    auto const makeNextForest = [=] {
         BfrExt::Camera camera = workspace->camera;
         camera.eye[0] += kShift * double(++*numViews) * (camera.eye[2] - camera.target[2]);
         BfrExt::View const view(camera, workspace->view.GetOptions());
-        BfrExt::CellForest const forest = view.MakeForest(*bounds, workspace->positions.data(), 3);
+        return view.MakeForest(*bounds, workspace->positions.data(), 3);
+    };
+    contest.contestants.push_back(makeContestant("BfrExt::ViewBounds, points", [=] {
+        BfrExt::CellForest const forest = makeNextForest();
         return workspace->Stream(BfrExt::PatchStream<float>(*workspace->factory, forest));
     }));
-    contest.pairings = {{"view", 0, {1}}, {"view-bounds", 2, {1}}};
+    auto const last = std::make_shared<BfrExt::CellForest>(makeNextForest());
+    contest.contestants.push_back(makeContestant("BfrExt::ViewBounds, points that change", [=] {
+        BfrExt::CellForest forest = makeNextForest();
+        double const result =
+            workspace->Stream(BfrExt::PatchStream<float>(*workspace->factory, forest),
+                              forest.FindChangedFaces(*last));
+        *last = std::move(forest);
+        return result;
+    }));
+    contest.pairings = {{"view", 0, {1}}, {"view-bounds", 2, {1}}, {"view-next", 3, {1}}};
     return contest;
 }
 
