@@ -88,68 +88,28 @@ void Surface<REAL>::BoundControlPointsFromMesh(REAL const meshPoints[],
 }
 
 template <typename REAL>
+internal::FacePatches<REAL> const &Surface<REAL>::findPatches() const {
+    auto const *patches = _patches.Get();
+    if (!patches) {
+        patches = &internal::FacePatches<REAL>::Get(GetFace().type, _patchLevel);
+        _patches.Set(patches);
+    }
+    return *patches;
+}
+
+template <typename REAL>
 int Surface<REAL>::GetNumPatchPoints() const {
-    int const numPatches =
-        IsValid() && !hasPatchRows() ? internal::GetNumFacePatches(GetFaceShape(), _patchLevel) : 0;
-    return GetNumControlPoints() + internal::kNumPatchPoints * numPatches;
+    return IsValid() ? _numControlPoints + findPatches().GetNumPoints() : 0;
 }
 
 template <typename REAL>
 void Surface<REAL>::ComputePatchPoints(REAL patchPoints[],
                                        PointDescriptor const &patchPointDesc) const {
-    computePatchPoints(patchPoints, patchPointDesc, nullptr);
-}
-
-template <typename REAL>
-void Surface<REAL>::ComputePatchPoints(REAL patchPoints[], PointDescriptor const &patchPointDesc,
-                                       int numPlaces, REAL const uvs[]) const {
-    if (!IsValid() || hasPatchRows()) {
-        return;
+    if (IsValid() && !GetFace().type.IsInLattice()) {
+        findPatches().MakePoints(
+            GetFace().type, patchPoints, patchPointDesc.size, patchPointDesc.stride,
+            patchPoints + std::ptrdiff_t(_numControlPoints) * patchPointDesc.stride);
     }
-    if (numPlaces >= internal::GetNumFacePatches(GetFaceShape(), _patchLevel)) {
-        ComputePatchPoints(patchPoints, patchPointDesc);
-        return;
-    }
-    std::vector<int> patches;
-    patches.reserve(std::size_t(numPlaces));
-    for (int i = 0; i < numPlaces; ++i) {
-        REAL const *const uv = uvs + 2 * std::ptrdiff_t(i);
-        internal::BfrPlace const place = internal::FindBfrPlace(_parameterization, GetFaceShape(),
-                                                                {double(uv[0]), double(uv[1])}, 0);
-        patches.push_back(internal::FindPatchPlace(place, GetFaceShape(), _patchLevel, 0).patch);
-    }
-    std::sort(patches.begin(), patches.end());
-    patches.erase(std::unique(patches.begin(), patches.end()), patches.end());
-    computePatchPoints(patchPoints, patchPointDesc, &patches);
-}
-
-// Computes the points of some patches, or of all.
-template <typename REAL>
-void Surface<REAL>::computePatchPoints(REAL patchPoints[], PointDescriptor const &patchPointDesc,
-                                       std::vector<int> const *patches) const {
-    if (!IsValid() || hasPatchRows()) {
-        return;
-    }
-    REAL *const points =
-        patchPoints + std::ptrdiff_t(GetNumControlPoints()) * patchPointDesc.stride;
-    internal::MakeFacePatchPoints(GetFace().type, _patchLevel, patchPoints, patchPointDesc.size,
-                                  patchPointDesc.stride, patches, points);
-}
-
-// Whether patches are sums of the control points.
-template <typename REAL>
-bool Surface<REAL>::hasPatchRows() const {
-    return GetFace().type.IsInLattice();
-}
-
-template <typename REAL>
-internal::PatchRows<REAL> const &Surface<REAL>::findPatchRows() const {
-    auto const *rows = _patchRows.Get();
-    if (!rows) {
-        rows = &internal::PatchRows<REAL>::Get(GetFace().type, _patchLevel);
-        _patchRows.Set(rows);
-    }
-    return *rows;
 }
 
 template <typename REAL>
@@ -157,11 +117,9 @@ template <int NUM_DERIVATIVES>
 void Surface<REAL>::evaluate(REAL const uv[2], REAL const patchPoints[],
                              PointDescriptor const &pointDesc, REAL *const results[6]) const {
     if (IsValid()) {
-        internal::PatchRows<REAL> const &rows = findPatchRows();
-        std::ptrdiff_t const first = rows.IsEmpty() ? _numControlPoints : 0;
-        internal::EvaluatePlace<NUM_DERIVATIVES>(
-            _parameterization, GetFaceShape(), {double(uv[0]), double(uv[1])}, _patchLevel, rows,
-            patchPoints + first * pointDesc.stride, pointDesc.size, pointDesc.stride, results);
+        findPatches().template Evaluate<NUM_DERIVATIVES>(
+            _parameterization, GetFaceShape(), {double(uv[0]), double(uv[1])}, patchPoints,
+            pointDesc.size, pointDesc.stride, results);
     }
 }
 

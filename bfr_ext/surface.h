@@ -24,7 +24,7 @@ class BaseType;
 template <typename TYPE>
 struct KeptFace;
 template <typename REAL>
-class PatchRows;
+class FacePatches;
 
 /// A pointer that threads may set at once, to the same.
 template <typename T>
@@ -186,29 +186,21 @@ public:
     /// @}
 
     /// @name Patch points
-    /// The points that Evaluate() at (u, v) takes: the control points and, but for faces in regular lattices of quads, triangles
-    /// or hexagons, 20 points of each bicubic Gregory patch behind them.  In lattices few types of faces share the weights that
-    /// make patches of control points.  Make them once for the points of a mesh; they serve any number of evaluations.
+    /// The points that Evaluate() at (u, v) takes, of which patches are weighted sums: the control points and, but for faces in
+    /// regular lattices of quads, triangles or hexagons, some 250 points of the second level behind them.  Types of faces share
+    /// the weights.  Make the points once for those of a mesh; they serve any number of evaluations, at any level of patches.
     /// @{
 
-    /// Control points, and points of patches where the face has these.
+    /// Control points, and those of the second level where the face needs them.
     int GetNumPatchPoints() const;
-    /// Copies the control points from those of the mesh, and computes the points of patches.
+    /// Copies the control points from those of the mesh, and computes the others.
     void PreparePatchPoints(REAL const meshPoints[], PointDescriptor const &meshPointDesc,
                             REAL patchPoints[], PointDescriptor const &patchPointDesc) const {
         GatherControlPoints(meshPoints, meshPointDesc, patchPoints, patchPointDesc);
         ComputePatchPoints(patchPoints, patchPointDesc);
     }
-    /// Computes the points of patches behind the control points, which are there.
+    /// Computes the others behind the control points, which are there.
     void ComputePatchPoints(REAL patchPoints[], PointDescriptor const &patchPointDesc) const;
-    /// \brief Computes those alone that Evaluate() takes at some places, where they are few: in a fraction of the time.
-    ///
-    /// \param patchPoints  GetNumPatchPoints(), the control points being there; others are left as they are.  Where there
-    ///                     are no others, nothing is written
-    /// \param numPlaces    how many places there are
-    /// \param uvs          u and v of each
-    void ComputePatchPoints(REAL patchPoints[], PointDescriptor const &patchPointDesc,
-                            int numPlaces, REAL const uvs[]) const;
     /// @}
 
     /// @name Evaluation
@@ -301,10 +293,7 @@ private:
     friend class SurfaceFactory;
 
     Index const *getPoints() const;
-    void computePatchPoints(REAL patchPoints[], PointDescriptor const &patchPointDesc,
-                            std::vector<int> const *patches) const;
-    bool hasPatchRows() const;
-    internal::PatchRows<REAL> const &findPatchRows() const;
+    internal::FacePatches<REAL> const &findPatches() const;
     template <int NUM_DERIVATIVES>
     void evaluate(REAL const uv[2], REAL const patchPoints[], PointDescriptor const &pointDesc,
                   REAL *const results[6]) const;
@@ -316,7 +305,7 @@ private:
     std::shared_ptr<void const> _owner; // of what the face refers to; null of an invalid surface
     internal::KeptFace<internal::BaseType> const *_keptFace = nullptr; // the owner's; null: its own
     std::vector<std::byte> _ownFace;
-    mutable internal::SharedPointer<internal::PatchRows<REAL> const> _patchRows; // found on demand
+    mutable internal::SharedPointer<internal::FacePatches<REAL> const> _patches; // found on demand
     int _patchLevel = 0;
     int _numControlPoints = 0; // the face's, without a look at it
     Parameterization _parameterization;

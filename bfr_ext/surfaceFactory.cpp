@@ -358,7 +358,7 @@ void SurfaceFactory::set(internal::BaseFace const &face, bool isKept,
         surface._owner = std::move(owner);
     }
     surface._keptFace = isKept ? &face : nullptr;
-    surface._patchRows = {};
+    surface._patches = {};
     surface._patchLevel = getPatchLevel(face.type);
     surface._numControlPoints = face.numPoints;
     FarExt::FaceShape const shape = face.type.GetShape(face.size);

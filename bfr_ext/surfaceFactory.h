@@ -129,8 +129,8 @@ public:
         /// The cache that was set.
         SurfaceFactoryCache *GetExternalCache() const { return _externalCache; }
 
-        /// Sets the level of the patches of Surface::Evaluate() at (u, v), 2 to 6: each level has four times the patches,
-        /// and about an eighth of the error.
+        /// Sets the level of the patches of Surface::Evaluate() at (u, v), 2 to 6: each level has about an eighth of the
+        /// error, and four times the weights, which types of faces share.
         Options &SetApproxLevelSmooth(int level) {
             _approxLevelSmooth = level;
             return *this;

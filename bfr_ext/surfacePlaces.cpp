@@ -84,12 +84,8 @@ void SurfacePlaces<REAL>::forEachPlace(REAL const *meshPoints, PointDescriptor c
             for (auto face = std::size_t(begin); face < std::size_t(end); ++face) {
                 Surface<REAL> const &surface = _surfaces[face];
                 points.resize(std::size_t(surface.GetNumPatchPoints()) * std::size_t(desc.size));
-                surface.GatherControlPoints(meshPoints, meshPointDesc, points.data(), desc);
-                Index const first = _firstPlaces[face];
-                Index const last = _firstPlaces[face + 1];
-                surface.ComputePatchPoints(points.data(), desc, last - first,
-                                           &_uvs[2 * std::size_t(first)]);
-                for (Index i = first; i < last; ++i) {
+                surface.PreparePatchPoints(meshPoints, meshPointDesc, points.data(), desc);
+                for (Index i = _firstPlaces[face]; i < _firstPlaces[face + 1]; ++i) {
                     function(surface, points.data(), std::ptrdiff_t(_numbers[std::size_t(i)]),
                              &_uvs[2 * std::size_t(i)]);
                 }

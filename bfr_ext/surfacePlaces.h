@@ -19,8 +19,7 @@ namespace OpenSubdivHex::BfrExt {
 ///     roots->Evaluate(positions, 3, points, du, dv, 3); // each frame
 /// \endcode
 ///
-/// Results are those of Surface::Evaluate().  Patch points of a face are made once for all of its points, only of the patches
-/// that have some, and then freed.
+/// Results are those of Surface::Evaluate().  Patch points of a face are made once for all of its points, and then freed.
 /// Threads share the faces (FarExt::SetExecutor()); results have the same bits for any number of threads.
 ///
 /// Nothing is changed after construction: several threads may use it.  std::bad_alloc passes through.

@@ -90,70 +90,49 @@ bool isUsed(std::vector<double> const *rows, std::size_t numRows, std::size_t co
     });
 }
 
-// The points of all patches that a cell is, some levels on, as sums of points of the cell.
+// Returns the patches that cells of the type have some levels on, where their corners are as old.
 template <typename REAL>
-struct PointMatrix {
-    explicit PointMatrix(std::vector<std::vector<double>> const &rows) {
-        for (std::size_t column = 0; column < rows[0].size(); ++column) {
-            if (isUsed(rows.data(), rows.size(), column)) {
-                columns.push_back(int(column));
-            }
-        }
-        columns.shrink_to_fit();
-        matrix = PlaceMatrix<REAL>(rows.size(), columns.size());
-        std::vector<double> used(columns.size());
-        for (std::size_t i = 0; i < rows.size(); ++i) {
-            std::transform(columns.begin(), columns.end(), used.begin(),
-                           [&](int column) { return rows[i][std::size_t(column)]; });
-            matrix.Set(i, used);
-        }
-    }
-    std::size_t GetHeapSize() const { return GetHeapSizes(columns, matrix); }
-
-    std::vector<int> columns; // those whose weights are not 0
-    PlaceMatrix<REAL> matrix;
-};
-
-// Returns the matrix that cells of the type share whose corners are as old.
-template <typename REAL>
-PointMatrix<REAL> const &getMatrix(CellType const &type, int steps, CornerAges const &ages,
-                                   int numLevels) {
+PatchRows<REAL> const &getRows(CellType const &type, int steps, CornerAges const &ages,
+                               int numLevels) {
     PatchAges const limited = limitAges(steps, ages);
     std::vector<int> key = limited.ofVertices;
     key.push_back(limited.steps);
     key.push_back(numLevels);
-    return type.GetPatterns().Get<PointMatrix<REAL>>(
-        PatternTable::GetKind<REAL>(PatternOf::PatchPoints), key.data(), key.data() + key.size(),
-        [&] { return PointMatrix<REAL>(findRows(type, steps, ages, numLevels)); });
+    return type.GetPatterns().Get<PatchRows<REAL>>(
+        PatternTable::GetKind<REAL>(PatternOf::PatchRows), key.data(), key.data() + key.size(),
+        [&] { return PatchRows<REAL>(findRows(type, steps, ages, numLevels)); });
 }
 
 // The first level whose cells are of few types, outside of lattices: irregular meshes have about as many
 // types of base faces and of their children as there are of these.
 constexpr int kCommonLevel = 2;
 
-// The points of the patches in a child of a base face, as sums of what the step of the child makes.
+} // namespace
+
 template <typename REAL>
 class ChildPatches {
 public:
-    // A child of its child.
-    struct Part {
-        PlaceMatrix<REAL> const *matrix;
-        std::size_t firstSource;
-    };
-
     // order: the rows of the step in the order in which they come; null: in their own.
-    ChildPatches(CellType const &child, int level, std::vector<int> const *order) {
+    ChildPatches(CellType const &child, int level, std::vector<int> const *order)
+        : _numbers(child.GetStep().GetNumRows(), -1) {
         CornerAges const ages = child.IsWhole() ? CornerAges(std::size_t(child.GetNumCorners()), 0)
                                                 : CornerAges{-1, -1, 0, 0};
         std::vector<CellType::Child> const &children = child.GetChildren();
-        forEachChild(
-            child.GetShape(), int(children.size()), ages, [&](int i, CornerAges const &ofChild) {
-                CellType::Child const &next = children[std::size_t(i)];
-                add(getMatrix<REAL>(*next.type, kCommonLevel, ofChild, level - kCommonLevel),
-                    next.step);
-            });
+        forEachChild(child.GetShape(), int(children.size()), ages,
+                     [&](int i, CornerAges const &ofChild) {
+                         CellType::Child const &next = children[std::size_t(i)];
+                         add(getRows<REAL>(*next.type, kCommonLevel, ofChild, level - kCommonLevel),
+                             next.step);
+                     });
+        _columns.shrink_to_fit();
+        int const *columns = _columns.data();
+        for (PatchBlock<REAL> &block : _blocks) {
+            block.columns = columns;
+            block.lastColumn = *std::max_element(columns, columns + block.numColumns);
+            columns += block.numColumns;
+        }
         if (order) {
-            std::vector<int> places(child.GetStep().GetNumRows());
+            std::vector<int> places(_numbers.size());
             for (std::size_t i = 0; i < order->size(); ++i) {
                 places[std::size_t((*order)[i])] = int(i);
             }
@@ -161,18 +140,19 @@ public:
                 source = places[std::size_t(source)];
             }
         }
-        _parts.shrink_to_fit();
+        _numbers = {};
+        _blocks.shrink_to_fit();
         _sources.shrink_to_fit();
     }
 
-    std::size_t GetHeapSize() const { return GetHeapSizes(_parts, _sources); }
-    int GetNumPatches() const { return _numPatches; }
-    std::vector<Part> const &GetParts() const { return _parts; }
-    // By column of all matrices, the row of the step.
+    std::size_t GetHeapSize() const { return GetHeapSizes(_blocks, _sources, _columns); }
+    // By patch.
+    std::vector<PatchBlock<REAL>> const &GetBlocks() const { return _blocks; }
+    // The points, as rows of the step.
     std::vector<int> const &GetSources() const { return _sources; }
 
 private:
-    void add(PointMatrix<REAL> const &ofCell, ChildStep const &step) {
+    void add(PatchRows<REAL> const &ofCell, ChildStep const &step) {
         // The rows that points of the cell are.
         std::vector<double> numbers(step.GetNumRows());
         std::iota(numbers.begin(), numbers.end(), 1.0);
@@ -184,17 +164,27 @@ private:
                 rows[std::size_t(byRow[row]) - 1] = int(row);
             }
         }
-        _parts.push_back({&ofCell.matrix, _sources.size()});
-        for (int const column : ofCell.columns) {
-            _sources.push_back(rows[std::size_t(column)]);
+        for (PatchBlock<REAL> const &block : ofCell.GetBlocks()) {
+            _blocks.push_back(block);
+            for (int i = 0; i < block.numColumns; ++i) {
+                int const row = rows[std::size_t(block.columns[i])];
+                int &number = _numbers[std::size_t(row)];
+                if (number < 0) {
+                    number = int(_sources.size());
+                    _sources.push_back(row);
+                }
+                _columns.push_back(number);
+            }
         }
-        _numPatches += int(ofCell.matrix.GetNumPlaces()) / kNumPatchPoints;
     }
 
-    int _numPatches = 0;
-    std::vector<Part> _parts;
+    std::vector<PatchBlock<REAL>> _blocks;
+    std::vector<int> _columns; // of all blocks, among the sources
     std::vector<int> _sources;
+    std::vector<int> _numbers; // by row, among the sources; while these are made
 };
+
+namespace {
 
 // Those of a child, kept with it: of a CellType or a RingCell.
 template <typename REAL, typename CHILD>
@@ -205,61 +195,52 @@ ChildPatches<REAL> const &getPatches(CHILD const &child, CellType const &type, i
         [&] { return ChildPatches<REAL>(type, level, order); });
 }
 
-// Makes the points of the patches of a face outside of lattices, from its control points; scratch memory is kept for the
-// next face.
+template <typename REAL>
+ChildPatches<REAL> const &getPatches(RingCell const &child, int level) {
+    return getPatches<REAL>(child, child.GetType(), level,
+                            child.IsInner() ? &child.GetColumns() : nullptr);
+}
+
+// Makes the points that patches of base faces outside of lattices are sums of; scratch memory is kept for the next face.
 template <typename REAL>
 class PointMaker {
 public:
-    // wanted: the patches, ascending; null: all
-    void Make(BaseType const &type, int level, REAL const *control, int size, std::ptrdiff_t stride,
-              std::vector<int> const *wanted, REAL *points) {
-        _level = level;
+    // size: of a point; stride: from one to the next; points: where they go
+    void Init(int size, std::ptrdiff_t stride, REAL *points) {
         _size = std::size_t(size);
         _paddedSize = StepMatrix::GetPaddedSize(_size);
-        _wanted = wanted;
         _stride = stride;
         _points = points;
-        _patch = 0;
-        if (PlainFaceType const *const plain = type.GetPlain()) {
-            makeOfRings(*plain, control);
-        } else {
-            makeOfSteps(*type, control);
-        }
     }
 
-private:
-    void makeOfRings(PlainFaceType const &type, REAL const *control) {
+    void MakeOfRings(PlainFaceType const &type, int level, REAL const *control) {
         FaceRings const &face = type.GetRings();
         _rings.Set(face.GetRings(), std::size_t(type.GetNumPoints()), nullptr, control, _stride,
                    _size);
+        REAL const *const ofRings = _rings.GetPoints();
         for (std::size_t i = 0; i <= face.GetRings().GetRings().size(); ++i) {
             RingCell const &child = face.GetChild(i);
+            std::vector<int> const &sources = getPatches<REAL>(child, level).GetSources();
+            _indices.resize(child.GetColumns().size());
+            face.FindChildIndices(i, _indices.data());
             if (child.IsInner()) {
                 // What the step makes is there.
-                addChild(getPatches<REAL>(child, child.GetType(), _level, &child.GetColumns()),
-                         [&] {
-                             _indices.resize(child.GetColumns().size());
-                             face.FindChildIndices(i, _indices.data());
-                             return Refined{_rings.GetPoints(), _indices.data()};
-                         });
+                for (int const source : sources) {
+                    write(ofRings + std::size_t(_indices[std::size_t(source)]) * _paddedSize);
+                }
                 continue;
             }
-            addChild(getPatches<REAL>(child, child.GetType(), _level, nullptr), [&] {
-                std::vector<int> const &columns = child.GetPoints().GetColumns();
-                _indices.resize(columns.size());
-                face.FindChildPoints(i, _indices.data());
-                grow(_ofChild, columns.size());
-                for (std::size_t column = 0; column < columns.size(); ++column) {
-                    StepMatrix::CopyPadded(
-                        _rings.GetPoints() + std::size_t(_indices[column]) * _paddedSize,
-                        _paddedSize, &_ofChild[std::size_t(columns[column]) * _paddedSize]);
-                }
-                return refine(child.GetType());
-            });
+            grow(_ofChild, _indices.size());
+            for (std::size_t column = 0; column < _indices.size(); ++column) {
+                StepMatrix::CopyPadded(
+                    ofRings + std::size_t(_indices[column]) * _paddedSize, _paddedSize,
+                    &_ofChild[std::size_t(child.GetColumns()[column]) * _paddedSize]);
+            }
+            writeRefined(child.GetType(), sources);
         }
     }
 
-    void makeOfSteps(CellType const &type, REAL const *control) {
+    void MakeOfSteps(CellType const &type, int level, REAL const *control) {
         auto const numPoints = std::size_t(type.GetNumPoints());
         grow(_ofChild, numPoints);
         for (std::size_t i = 0; i < numPoints; ++i) {
@@ -270,104 +251,40 @@ private:
         grow(_ofFace, step.GetNumRows());
         step.Apply(_ofChild.data(), _paddedSize, _ofFace.data());
         for (CellType::Child const &child : type.GetChildren()) {
-            addChild(getPatches<REAL>(*child.type, *child.type, _level, nullptr), [&] {
-                grow(_ofChild, child.step.GetNumRows());
-                child.step.CopyPoints(_ofFace.data(), _paddedSize, _ofChild.data());
-                return refine(*child.type);
-            });
+            grow(_ofChild, child.step.GetNumRows());
+            child.step.CopyPoints(_ofFace.data(), _paddedSize, _ofChild.data());
+            writeRefined(*child.type,
+                         getPatches<REAL>(*child.type, *child.type, level, nullptr).GetSources());
         }
     }
 
-    // What the step of a child makes.
-    struct Refined {
-        REAL const *points;
-        int const *indices; // which points they are; null: all in turn
-    };
-
-    Refined refine(CellType const &child) {
+private:
+    // Writes some of what the step of a child makes.
+    void writeRefined(CellType const &child, std::vector<int> const &sources) {
         StepMatrix const &step = child.GetStep();
         grow(_refined, step.GetNumRows());
         step.Apply(_ofChild.data(), _paddedSize, _refined.data());
-        return {_refined.data(), nullptr};
-    }
-
-    // Adds the points of a child, for whose patches find() gives what its step makes.
-    template <typename FIND>
-    void addChild(ChildPatches<REAL> const &patches, FIND const &find) {
-        if (!isWanted(patches.GetNumPatches())) {
-            _patch += patches.GetNumPatches();
-            return;
-        }
-        Refined const refined = find();
-        std::vector<int> const *sources = &patches.GetSources();
-        if (refined.indices) {
-            _sources.resize(sources->size());
-            std::transform(sources->begin(), sources->end(), _sources.begin(),
-                           [&](int source) { return refined.indices[source]; });
-            sources = &_sources;
-        }
-        for (auto const &part : patches.GetParts()) {
-            sumUp(*part.matrix, refined.points, sources->data() + part.firstSource);
+        for (int const source : sources) {
+            write(&_refined[std::size_t(source) * _paddedSize]);
         }
     }
-
-    // Makes the points of some patches.
-    void sumUp(PlaceMatrix<REAL> const &matrix, REAL const *points, int const *indices) {
-        int const numPatches = int(matrix.GetNumPlaces()) / kNumPatchPoints;
-        PlaceSums<REAL> sums = {points,
-                                std::ptrdiff_t(_paddedSize),
-                                _size,
-                                indices,
-                                _points + std::ptrdiff_t(_patch) * kNumPatchPoints * _stride,
-                                _stride};
-        if (isWanted(numPatches)) {
-            if (_wanted) {
-                _runs.clear();
-                auto const end = findWanted(_patch + numPatches);
-                for (auto patch = findWanted(_patch); patch != end; ++patch) {
-                    addRuns((*patch - _patch) * kNumPatchPoints);
-                }
-                sums.runs = _runs.data();
-                sums.numRuns = _runs.size();
-            }
-            SumUpPlaces(matrix, sums);
-        }
-        _patch += numPatches;
-    }
-
-    // Whether one of the next patches is wanted.
-    bool isWanted(int numPatches) const {
-        return !_wanted || findWanted(_patch) != findWanted(_patch + numPatches);
-    }
-    std::vector<int>::const_iterator findWanted(int patch) const {
-        return std::lower_bound(_wanted->begin(), _wanted->end(), patch);
-    }
-    // The rows of a patch, and where they go: each to its own place.
-    void addRuns(int row) {
-        for (int const end = row + kNumPatchPoints; row < end;) {
-            int const next = std::min(end, (row / PlaceRun::kMaxBlock + 1) * PlaceRun::kMaxBlock);
-            _runs.push_back({row, row, next - row});
-            row = next;
-        }
+    void write(REAL const *point) {
+        StepMatrix::Pad(point, _size, _points);
+        _points += _stride;
     }
     void grow(std::vector<REAL> &numbers, std::size_t numPoints) const {
         numbers.resize(std::max(numbers.size(), numPoints * _paddedSize));
     }
 
-    int _level = 0;
-    std::size_t _size = 0; // of a point
+    std::size_t _size = 0;
     std::size_t _paddedSize = 0;
-    std::vector<int> const *_wanted = nullptr;
     std::ptrdiff_t _stride = 0;
-    REAL *_points = nullptr;
-    int _patch = 0; // the next one
+    REAL *_points = nullptr; // the next one
     RingValues<REAL> _rings;
     std::vector<REAL> _ofFace;  // what its step makes
     std::vector<REAL> _ofChild; // points before its step
     std::vector<REAL> _refined;
     std::vector<int> _indices;
-    std::vector<int> _sources;
-    std::vector<PlaceRun> _runs;
 };
 
 // The coordinates of a cell in which a patch is a bilinear quadrilateral, and where a place is in it.
@@ -399,16 +316,6 @@ Quadrilateral findInKite(Pair const &coords, double m) {
             {{m * a * factor, -(1 + m * a) * factor}, {-(1 + m * b) * factor, m * b * factor}},
             {m, m}};
 }
-
-} // namespace
-
-int GetNumFacePatches(FaceShape shape, int level) {
-    // A sector has 1 + 4 + 16 ... half cells.
-    return MakeFaceCells(shape).GetNumPatches() +
-           shape.GetNumSectors() * (getNumHalfPatches(level) - 1) / 3;
-}
-
-namespace {
 
 // A half cell of a level.
 struct SectorCell {
@@ -718,24 +625,15 @@ PatchPlace FindPatchPlace(BfrPlace const &ofFace, FaceShape shape, int level, in
                                  : findPatchPlace<2>(ofFace, shape, level, onPatch);
 }
 
-template <typename REAL>
-void MakeFacePatchPoints(BaseType const &type, int level, REAL const *control, int size,
-                         std::ptrdiff_t stride, std::vector<int> const *wanted, REAL *points) {
-    if (!type.IsInLattice()) {
-        static thread_local PointMaker<REAL> maker;
-        maker.Make(type, level, control, size, stride, wanted, points);
-    }
-}
-
 namespace {
 
 // Asks for numbers, so that they are on their way while the weights of a patch are computed, and those of the next place
 // as well: benchmark places of surfaces is 1.5 times as fast.
-template <typename REAL>
-OPENSUBDIVHEX_INLINE void prefetch([[maybe_unused]] REAL const *numbers,
+template <typename T>
+OPENSUBDIVHEX_INLINE void prefetch([[maybe_unused]] T const *numbers,
                                    [[maybe_unused]] std::ptrdiff_t count) {
 #if defined(__GNUC__)
-    constexpr std::ptrdiff_t kLine = 64 / sizeof(REAL);
+    constexpr std::ptrdiff_t kLine = 64 / sizeof(T);
     for (std::ptrdiff_t i = 0; i < count - 1; i += kLine) {
         __builtin_prefetch(numbers + i);
     }
@@ -746,97 +644,142 @@ OPENSUBDIVHEX_INLINE void prefetch([[maybe_unused]] REAL const *numbers,
 } // namespace
 
 template <typename REAL>
-PatchRows<REAL> const &PatchRows<REAL>::Get(BaseType const &type, int level) {
-    static PatchRows const kNone;
-    if (!type.IsInLattice()) {
-        return kNone;
-    }
-    return type->GetPatterns().Get<PatchRows>(
-        PatternTable::GetKind<REAL>(PatternOf::PatchRows), &level, &level + 1, [&] {
-            CornerAges const ages(std::size_t(type->GetNumCorners()), -1);
-            return PatchRows(findRows(*type, 0, ages, level));
-        });
-}
-
-template <typename REAL>
 PatchRows<REAL>::PatchRows(std::vector<std::vector<double>> const &rows) {
+    std::vector<std::size_t> firstWeights;
     for (std::size_t first = 0; first < rows.size(); first += kNumPatchPoints) {
-        add(&rows[first]);
+        std::vector<double> const *const points = &rows[first];
+        std::size_t const firstColumn = _columns.size();
+        for (std::size_t column = 0; column < points->size(); ++column) {
+            if (isUsed(points, kNumPatchPoints, column)) {
+                _columns.push_back(int(column));
+            }
+        }
+        int const numColumns = int(_columns.size() - firstColumn);
+        auto const paddedSize = std::size_t(PatchBlock<REAL>::GetPaddedSize(numColumns));
+        firstWeights.push_back(_weights.size());
+        _weights.resize(_weights.size() + kNumPatchPoints * paddedSize);
+        REAL *to = _weights.data() + firstWeights.back();
+        for (int row = 0; row < kNumPatchPoints; ++row, to += paddedSize) {
+            for (std::size_t i = 0; i < std::size_t(numColumns); ++i) {
+                auto const column = std::size_t(_columns[firstColumn + i]);
+                double weight = points[PatchRow::kPoints[row]][column];
+                if (row >= PatchRow::kNumBicubic) {
+                    int const second = PatchRow::kOfCorners[row - PatchRow::kNumBicubic];
+                    weight -= points[PatchRow::kPoints[second]][column];
+                }
+                to[i] = REAL(weight);
+            }
+        }
+        _blocks.push_back({nullptr, nullptr, numColumns, _columns.back()});
     }
-    _endOfPoints = 1 + *std::max_element(_columns.begin(), _columns.end());
+    int const *columns = _columns.data();
+    for (std::size_t patch = 0; patch < _blocks.size(); ++patch) {
+        _blocks[patch].weights = _weights.data() + firstWeights[patch];
+        _blocks[patch].columns = columns;
+        columns += _blocks[patch].numColumns;
+    }
 }
 
 template <typename REAL>
-void PatchRows<REAL>::add(std::vector<double> const *points) {
-    Patch patch = {_weights.size(), _columns.size(), 0};
-    for (std::size_t column = 0; column < points->size(); ++column) {
-        if (isUsed(points, kNumPatchPoints, column)) {
-            _columns.push_back(int(column));
-            ++patch.numColumns;
+FacePatches<REAL> const &FacePatches<REAL>::Get(BaseType const &type, int level) {
+    PlainFaceType const *const plain = type.GetPlain();
+    PatternTable &patterns = plain ? plain->GetRings().GetPatterns() : type->GetPatterns();
+    return patterns.Get<FacePatches>(PatternTable::GetKind<REAL>(PatternOf::FacePatches), &level,
+                                     &level + 1, [&] { return FacePatches(type, level); });
+}
+
+template <typename REAL>
+FacePatches<REAL>::FacePatches(BaseType const &type, int level) : _level(level) {
+    if (PlainFaceType const *const plain = type.GetPlain()) {
+        FaceRings const &face = plain->GetRings();
+        for (std::size_t i = 0; i <= face.GetRings().GetRings().size(); ++i) {
+            addChild(getPatches<REAL>(face.GetChild(i), level), plain->GetNumPoints());
         }
-    }
-    _patches.push_back(patch);
-    auto const paddedSize = std::size_t(PatchBlock<REAL>::GetPaddedSize(patch.numColumns));
-    _weights.resize(patch.firstWeight + kNumPatchPoints * paddedSize);
-    REAL *to = _weights.data() + patch.firstWeight;
-    for (int row = 0; row < kNumPatchPoints; ++row, to += paddedSize) {
-        for (std::size_t i = 0; i < std::size_t(patch.numColumns); ++i) {
-            auto const column = std::size_t(_columns[patch.firstColumn + i]);
-            double weight = points[PatchRow::kPoints[row]][column];
-            if (row >= PatchRow::kNumBicubic) {
-                int const second = PatchRow::kOfCorners[row - PatchRow::kNumBicubic];
-                weight -= points[PatchRow::kPoints[second]][column];
-            }
-            to[i] = REAL(weight);
+    } else if (type.IsInLattice()) {
+        CornerAges const ages(std::size_t(type->GetNumCorners()), -1);
+        _ofLattice = PatchRows<REAL>(findRows(*type, 0, ages, level));
+        _parts.push_back({_ofLattice.GetBlocks().data(), 0, type->GetNumPoints()});
+        _numInFirst = int(_ofLattice.GetBlocks().size());
+    } else {
+        for (CellType::Child const &child : type->GetChildren()) {
+            addChild(getPatches<REAL>(*child.type, *child.type, level, nullptr),
+                     type->GetNumPoints());
         }
     }
 }
 
-template <int NUM_DERIVATIVES, typename REAL>
-void EvaluatePlace(Bfr::Parameterization const &parameterization, FaceShape shape, Pair const &uv,
-                   int level, PatchRows<REAL> const &rows, REAL const *points, int size,
-                   std::ptrdiff_t stride, REAL *const *results) {
-    bool const hasRows = !rows.IsEmpty();
-    auto const getPoints = [&](int patch) {
-        return hasRows ? points : points + std::ptrdiff_t(patch) * kNumPatchPoints * stride;
-    };
-    if (hasRows) {
-        prefetch(points, rows.GetEndOfPoints() * stride);
+template <typename REAL>
+void FacePatches<REAL>::addChild(ChildPatches<REAL> const &child, int numControlPoints) {
+    if (_parts.empty()) {
+        _numInFirst = int(child.GetBlocks().size());
     }
-    PatchPlace const place = findPatchPlace<NUM_DERIVATIVES>(
-        FindBfrPlace(parameterization, shape, uv, 0), shape, level, [&](int patch) {
-            if (!hasRows) {
-                prefetch(getPoints(patch), kNumPatchPoints * stride);
-            }
+    int const numPoints = int(child.GetSources().size());
+    _parts.push_back({child.GetBlocks().data(), numControlPoints + _numPoints, numPoints});
+    _numPoints += numPoints;
+}
+
+template <typename REAL>
+void FacePatches<REAL>::MakePoints(BaseType const &type, REAL const *control, int size,
+                                   std::ptrdiff_t stride, REAL *points) const {
+    static thread_local PointMaker<REAL> maker;
+    maker.Init(size, stride, points);
+    if (PlainFaceType const *const plain = type.GetPlain()) {
+        maker.MakeOfRings(*plain, _level, control);
+    } else if (!type.IsInLattice()) {
+        maker.MakeOfSteps(*type, _level, control);
+    }
+}
+
+// Returns the part that has a patch, and which of the part's patches it is.
+template <typename REAL>
+auto FacePatches<REAL>::findPart(int &patch) const -> Part const & {
+    if (patch < _numInFirst) {
+        return _parts[0];
+    }
+    int const levels = 2 * (_level - 1);
+    int const behindFirst = patch - _numInFirst;
+    patch = behindFirst & ((1 << levels) - 1);
+    return _parts[1 + std::size_t(behindFirst >> levels)];
+}
+
+template <typename REAL>
+template <int NUM_DERIVATIVES>
+void FacePatches<REAL>::Evaluate(Bfr::Parameterization const &parameterization, FaceShape shape,
+                                 Pair const &uv, REAL const *points, int size,
+                                 std::ptrdiff_t stride, REAL *const *results) const {
+    prefetch(_parts.data(), std::ptrdiff_t(_parts.size()));
+    PatchPlace place = findPatchPlace<NUM_DERIVATIVES>(
+        FindBfrPlace(parameterization, shape, uv, 0), shape, _level, [&](int patch) {
+            Part const &part = findPart(patch);
+            prefetch(part.blocks + patch, 1);
+            prefetch(points + part.firstPoint * stride, part.numPoints * stride);
         });
-    SumUpPatch(PatchWeights<NUM_DERIVATIVES, REAL>(place),
-               hasRows ? rows[place.patch] : PatchBlock<REAL>{nullptr, nullptr, 0},
-               getPoints(place.patch), size, stride, results);
+    Part const &part = findPart(place.patch);
+    SumUpPatch(PatchWeights<NUM_DERIVATIVES, REAL>(place), part.blocks[place.patch],
+               points + part.firstPoint * stride, size, stride, results);
 }
 
 template class PatchRows<float>;
+template class FacePatches<float>;
 template class PatchRows<double>;
-template void MakeFacePatchPoints(BaseType const &, int, float const *, int, std::ptrdiff_t,
-                                  std::vector<int> const *, float *);
-template void MakeFacePatchPoints(BaseType const &, int, double const *, int, std::ptrdiff_t,
-                                  std::vector<int> const *, double *);
-template void EvaluatePlace<0>(Bfr::Parameterization const &, FaceShape, Pair const &, int,
-                               PatchRows<float> const &, float const *, int, std::ptrdiff_t,
-                               float *const *);
-template void EvaluatePlace<0>(Bfr::Parameterization const &, FaceShape, Pair const &, int,
-                               PatchRows<double> const &, double const *, int, std::ptrdiff_t,
-                               double *const *);
-template void EvaluatePlace<1>(Bfr::Parameterization const &, FaceShape, Pair const &, int,
-                               PatchRows<float> const &, float const *, int, std::ptrdiff_t,
-                               float *const *);
-template void EvaluatePlace<1>(Bfr::Parameterization const &, FaceShape, Pair const &, int,
-                               PatchRows<double> const &, double const *, int, std::ptrdiff_t,
-                               double *const *);
-template void EvaluatePlace<2>(Bfr::Parameterization const &, FaceShape, Pair const &, int,
-                               PatchRows<float> const &, float const *, int, std::ptrdiff_t,
-                               float *const *);
-template void EvaluatePlace<2>(Bfr::Parameterization const &, FaceShape, Pair const &, int,
-                               PatchRows<double> const &, double const *, int, std::ptrdiff_t,
-                               double *const *);
+template class FacePatches<double>;
+template void FacePatches<float>::Evaluate<0>(Bfr::Parameterization const &, FaceShape,
+                                              Pair const &, float const *, int, std::ptrdiff_t,
+                                              float *const *) const;
+template void FacePatches<double>::Evaluate<0>(Bfr::Parameterization const &, FaceShape,
+                                               Pair const &, double const *, int, std::ptrdiff_t,
+                                               double *const *) const;
+template void FacePatches<float>::Evaluate<1>(Bfr::Parameterization const &, FaceShape,
+                                              Pair const &, float const *, int, std::ptrdiff_t,
+                                              float *const *) const;
+template void FacePatches<double>::Evaluate<1>(Bfr::Parameterization const &, FaceShape,
+                                               Pair const &, double const *, int, std::ptrdiff_t,
+                                               double *const *) const;
+template void FacePatches<float>::Evaluate<2>(Bfr::Parameterization const &, FaceShape,
+                                              Pair const &, float const *, int, std::ptrdiff_t,
+                                              float *const *) const;
+template void FacePatches<double>::Evaluate<2>(Bfr::Parameterization const &, FaceShape,
+                                               Pair const &, double const *, int, std::ptrdiff_t,
+                                               double *const *) const;
 
 } // namespace OpenSubdivHex::BfrExt::internal

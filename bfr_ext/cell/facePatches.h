@@ -17,71 +17,78 @@ class BaseType;
 inline constexpr int kFirstPatchLevel = 2;
 inline constexpr int kLastPatchLevel = 6;
 
-/// \brief How many Gregory patches the cells of a level are in a base face.
+/// \brief Finds the patch of a place of a base face, with derivatives as far as \p numDerivatives asks: 0, 1 or 2.
 ///
-/// They are in the order of the cells: depth first, with children in the order of RefineCell().
-int GetNumFacePatches(FaceShape shape, int level);
-
-/// Finds the patch of a place of a base face, with derivatives as far as \p numDerivatives asks: 0, 1 or 2.
+/// Patches, one or more for each cell of a level, are in the order of the cells: depth first, with children in the order of
+/// RefineCell().
 PatchPlace FindPatchPlace(BfrPlace const &ofFace, FaceShape shape, int level, int numDerivatives);
 
-/// \brief The Gregory patches of a level in a base face as sums of its control points.
-///
-/// Base faces in lattices have them: there few types serve all faces, whose patches need no points of their own.
+/// \brief Gregory patches as sums of points of a cell.
 template <typename REAL>
 class PatchRows {
 public:
-    /// Those of a type, made on demand; without patches where faces of the type have patch points.
-    static PatchRows const &Get(BaseType const &type, int level);
-
     /// None.
     PatchRows() = default;
-    /// \param rows  by patch those of its kNumPatchPoints points, weights of all control points
+    /// \param rows  by patch those of its kNumPatchPoints points, weights of all points of the cell
     explicit PatchRows(std::vector<std::vector<double>> const &rows);
 
-    std::size_t GetHeapSize() const { return GetHeapSizes(_patches, _columns, _weights); }
-    bool IsEmpty() const { return _patches.empty(); }
-    PatchBlock<REAL> operator[](int patch) const {
-        Patch const &of = _patches[std::size_t(patch)];
-        return {_weights.data() + of.firstWeight, _columns.data() + of.firstColumn, of.numColumns};
-    }
-    /// Control points that patches are sums of lie before it.
-    int GetEndOfPoints() const { return _endOfPoints; }
+    std::size_t GetHeapSize() const { return GetHeapSizes(_blocks, _columns, _weights); }
+    std::vector<PatchBlock<REAL>> const &GetBlocks() const { return _blocks; }
 
 private:
-    struct Patch {
-        std::size_t firstWeight;
-        std::size_t firstColumn;
-        int numColumns;
-    };
-
-    void add(std::vector<double> const *points);
-
-    std::vector<Patch> _patches;
-    std::vector<int> _columns; // by patch those whose weights are not 0
+    std::vector<PatchBlock<REAL>> _blocks; // by patch, of the numbers below
+    std::vector<int> _columns;             // by patch those whose weights are not 0
     std::vector<REAL, RegisterAllocator<REAL>> _weights;
-    int _endOfPoints = 0;
 };
 
-/// \brief Makes the points of patches of a face from its control points, where it has any.
-///
-/// \param control  points of the type, of \p size numbers each, from one to the next by \p stride
-/// \param wanted   the patches, ascending; null: all
-/// \param points   kNumPatchPoints for each patch of the face; those of other patches are left as they are
+/// \brief The Gregory patches in a child of a base face as sums of points that the step of the child makes.
 template <typename REAL>
-void MakeFacePatchPoints(BaseType const &type, int level, REAL const *control, int size,
-                         std::ptrdiff_t stride, std::vector<int> const *wanted, REAL *points);
+class ChildPatches;
 
-/// \brief Evaluates the patch of a place: the point, and derivatives by u and v as far as NUM_DERIVATIVES asks:
-/// 0, 1 or 2.
+/// \brief The Gregory patches of a level in a base face, and the points that they are sums of.
 ///
-/// \param rows     those of the face
-/// \param points   the control points or, where there are no rows, those of all patches
-/// \param results  the point; by u, by v; by u twice, by u and v, by v twice
-template <int NUM_DERIVATIVES, typename REAL>
-void EvaluatePlace(Bfr::Parameterization const &parameterization, FaceShape shape, Pair const &uv,
-                   int level, PatchRows<REAL> const &rows, REAL const *points, int size,
-                   std::ptrdiff_t stride, REAL *const *results);
+/// In lattices few types serve all faces: patches are sums of the control points.  Other base faces have types of their own,
+/// and few types of cells behind two steps: there, patches are sums of points of that level.
+template <typename REAL>
+class FacePatches {
+public:
+    /// Those of a type, made on demand.
+    static FacePatches const &Get(BaseType const &type, int level);
+
+    std::size_t GetHeapSize() const { return GetHeapSizes(_ofLattice, _parts); }
+    /// Points that the patches need besides the control points.
+    int GetNumPoints() const { return _numPoints; }
+    /// Makes these from the control points, of \p size numbers each, from one to the next by \p stride.
+    void MakePoints(BaseType const &type, REAL const *control, int size, std::ptrdiff_t stride,
+                    REAL *points) const;
+    /// Evaluates the patch of a place: the point, and derivatives by u and v as far as NUM_DERIVATIVES asks:
+    /// 0, 1 or 2.
+    ///
+    /// \param points   the control points, and those of MakePoints() behind them
+    /// \param results  the point; by u, by v; by u twice, by u and v, by v twice
+    template <int NUM_DERIVATIVES>
+    void Evaluate(Bfr::Parameterization const &parameterization, FaceShape shape, Pair const &uv,
+                  REAL const *points, int size, std::ptrdiff_t stride, REAL *const *results) const;
+
+private:
+    // The patches of a child, or all, and the points that they are sums of.
+    struct Part {
+        PatchBlock<REAL> const *blocks;
+        int firstPoint;
+        int numPoints;
+    };
+
+    FacePatches(BaseType const &type, int level);
+
+    void addChild(ChildPatches<REAL> const &child, int numControlPoints);
+    Part const &findPart(int &patch) const;
+
+    int _level;
+    int _numInFirst = 0; // patches of the first part
+    int _numPoints = 0;
+    PatchRows<REAL> _ofLattice;
+    std::vector<Part> _parts;
+};
 
 } // namespace OpenSubdivHex::BfrExt::internal
 

@@ -2,8 +2,6 @@
 #ifndef OPENSUBDIVHEX_BFR_EXT_CELL_LANES_H
 #define OPENSUBDIVHEX_BFR_EXT_CELL_LANES_H
 
-#include "stepMatrix.h"
-
 #include "far_ext/vtr/inline.h"
 
 #include <algorithm>
@@ -14,7 +12,7 @@ namespace OpenSubdivHex::BfrExt::internal {
 /// Some numbers of a point, which are computed with at once.
 template <typename REAL>
 struct Lanes {
-    static constexpr std::size_t kCount = StepMatrix::kPadding;
+    static constexpr std::size_t kCount = 4;
 
     OPENSUBDIVHEX_INLINE static Lanes Load(REAL const *from) {
         Lanes result;

@@ -45,9 +45,10 @@ struct PatchBlock {
         return (numColumns + kPadding - 1) / kPadding * kPadding;
     }
 
-    REAL const *weights; ///< row by row; null: the points are those of the patch
-    int const *columns;  ///< the points, ascending; null, too
+    REAL const *weights; ///< row by row
+    int const *columns;  ///< the points
     int numColumns;
+    int lastColumn; ///< the largest of the columns
 };
 
 /// A coordinate in a patch, and the quadratic Bernstein polynomials there.
@@ -106,10 +107,10 @@ struct PatchWeights {
 
 /// \brief Writes the point of a patch, and its derivatives, in the order of EvaluatePlace(), by what the machine has.
 ///
-/// Points of the patch are evaluated by De Casteljau's algorithm.  Of a block the rows are weighed, and so the columns, whose
-/// points are summed up.  The same bits for any size and stride of points.
+/// The rows of the block are weighed, and so its columns, whose points are summed up.  The same bits for any size and stride
+/// of points.
 ///
-/// \param points   of the patch, or those that columns name
+/// \param points   those that columns name
 /// \param results  the point, and its derivatives
 template <int NUM_DERIVATIVES, typename REAL>
 void SumUpPatch(PatchWeights<NUM_DERIVATIVES, REAL> const &weights, PatchBlock<REAL> const &block,

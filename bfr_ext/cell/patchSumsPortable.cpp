@@ -7,11 +7,7 @@ template <int NUM_DERIVATIVES, typename REAL>
 void SumUpPatchPortable(PatchWeights<NUM_DERIVATIVES, REAL> const &weights,
                         PatchBlock<REAL> const &block, REAL const *points, int size,
                         std::ptrdiff_t stride, REAL *const *results) {
-    if (block.weights) {
-        sumUpBlock(weights, block, points, size, stride, results);
-    } else {
-        sumUpPatch(weights, points, size, stride, results);
-    }
+    sumUpBlock(weights, block, points, size, stride, results);
 }
 
 template void SumUpPatchPortable(PatchWeights<0, float> const &, PatchBlock<float> const &,

@@ -32,9 +32,10 @@ enum class PatternOf {
     RingCell,
     RingItem,
     SecondDerivatives,
-    PatchPoints,
+    PatchRows,
     ChildPatches,
-    PatchRows
+    FacePatches,
+    LatticeItem
 };
 
 /// \brief Values by key, of any type.

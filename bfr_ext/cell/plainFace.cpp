@@ -209,8 +209,9 @@ CellType::BorderItem PlainFaceType::makeLatticeItem(CellPatch const &cell, int c
 CellType::BorderItem const &PlainFaceType::GetLatticeItem(int const *turns,
                                                           std::size_t item) const {
     auto const get = [&](std::size_t i, auto const &make) -> CellType::BorderItem const & {
-        return GetRings().GetLatticeItems().Get<CellType::BorderItem>(int(i), turns + i,
-                                                                      turns + i + 1, make);
+        int const key[2] = {int(i), turns[i]};
+        return GetRings().GetPatterns().Get<CellType::BorderItem>(
+            PatternTable::GetKind<double>(PatternOf::LatticeItem), key, key + 2, make);
     };
     return get(item, [&] {
         CellPatch const cell = makeCell(false);

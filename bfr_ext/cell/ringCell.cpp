@@ -293,7 +293,7 @@ private:
     std::optional<CellRefinement> _refinement;
 };
 
-FaceRings::FaceRings(CellPatch const &cell, RingCells &cells) : _latticeItems(cells.GetMemory()) {
+FaceRings::FaceRings(CellPatch const &cell, RingCells &cells) : _patterns(cells.GetMemory()) {
     PatchCorners const corners(cell.patch);
     bool const isPlain = _rings.Init(corners, cell.locals, cells.GetMasks());
     assert(isPlain);

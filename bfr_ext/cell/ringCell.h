@@ -233,8 +233,8 @@ public:
     FaceRings(FarExt::internal::CellPatch const &cell, RingCells &cells);
 
     VertexRings const &GetRings() const { return _rings; }
-    /// The edges and vertices that are in a lattice, by item and turn; made on demand.
-    PatternTable &GetLatticeItems() const { return _latticeItems; }
+    /// What is made on demand: the edges and vertices that are in a lattice, and patches.
+    PatternTable &GetPatterns() const { return _patterns; }
     std::size_t GetHeapSize() const { return internal::GetHeapSize(_rings); }
     /// Whether a vertex and its neighbours are in a regular lattice, or both vertices of an edge.
     bool IsVertexInLattice(int vert) const {
@@ -280,7 +280,7 @@ private:
 
     VertexRings _rings;
     RingFace const *_cells;
-    mutable PatternTable _latticeItems;
+    mutable PatternTable _patterns;
 };
 
 /// The points of rings, evaluated when they are asked for.

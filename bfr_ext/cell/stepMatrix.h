@@ -2,6 +2,7 @@
 #ifndef OPENSUBDIVHEX_BFR_EXT_CELL_STEP_MATRIX_H
 #define OPENSUBDIVHEX_BFR_EXT_CELL_STEP_MATRIX_H
 
+#include "lanes.h"
 #include "memoryCount.h"
 
 #include "far_ext/limit/limitPatch.h"
@@ -42,7 +43,7 @@ public:
     }
 
     /// \brief SIMD width of Apply(); points are padded to a multiple of it.
-    static constexpr std::size_t kPadding = 4;
+    static constexpr std::size_t kPadding = Lanes<float>::kCount;
     static std::size_t GetPaddedSize(std::size_t size) {
         return (size + kPadding - 1) / kPadding * kPadding;
     }
@@ -76,15 +77,12 @@ public:
                 auto const *const end = arrays.entries + arrays.ends[row];
                 for (std::size_t first = 0; first < paddedSize;
                      first += kPadding, result += kPadding) {
-                    REAL sums[kPadding] = {};
+                    Lanes<REAL> sum = {};
                     for (auto const *entry = begin; entry != end; ++entry) {
-                        REAL const *const point = points + entry->point * paddedSize + first;
-                        REAL const weight = weights[entry->weight];
-                        for (std::size_t i = 0; i < kPadding; ++i) {
-                            sums[i] += weight * point[i];
-                        }
+                        sum = sum + Lanes<REAL>::Load(points + entry->point * paddedSize + first) *
+                                        weights[entry->weight];
                     }
-                    std::copy(sums, sums + kPadding, result);
+                    sum.Store(result);
                 }
                 begin = end;
             }

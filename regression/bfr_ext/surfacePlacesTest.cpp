@@ -262,7 +262,10 @@ TEST(SurfacePlaces, InPatchesChangeAsTheirDerivativesSay) {
                 return FindPatchPlace(FindBfrPlace(BfrExt::Parameterization(size), shape, uv, 0),
                                       shape, level, 2);
             };
-            std::vector<bool> isMet(std::size_t(BfrExt::internal::GetNumFacePatches(shape, level)));
+            // A sector has 1 + 4 + 16 ... half cells.
+            int const numPatches = FarExt::internal::MakeFaceCells(shape).GetNumPatches() +
+                                   shape.GetNumSectors() * ((1 << 2 * level) - 1) / 3;
+            std::vector<bool> isMet(static_cast<std::size_t>(numPatches));
             std::vector<Uv> places = findPlaces(size, 400);
             // Places near the centre, whose patches are of the whole cell.
             std::vector<Uv> const nearCenter = findPlaces(size, 40, 0.02);
@@ -506,52 +509,22 @@ TEST(SurfacePlaces, OfManyFacesAreThoseOfEach) {
     EXPECT_EQ(status.GetComponentIndex(), shape.GetNumFaces());
 }
 
-// Points of the patches that have places, and of no others, with the same bits.
-TEST(SurfacePlaces, HavePatchPointsOfTheirOwn) {
+// Patches of quads in a lattice are sums of the control points, those of other faces are sums of a few points more.
+TEST(SurfacePlaces, HaveFewPatchPoints) {
     auto const quads = MakeTorus(12, 8, TorusFaces::Quads);
     auto const triangles = MakeTorus(6, 5, TorusFaces::IrregularTriangles);
     for (Shape const *const shape : {&quads, &triangles, &GetFeatureShape("dartsTriangles")}) {
         auto const refiner = CreateRefiner(*shape, ReferenceMask::Smooth, 0, getOptions());
-        std::vector<float> const positions(shape->positions.begin(), shape->positions.end());
         for (int const level : {2, 4}) {
             auto const factory = SurfaceFactory::Create(
                 *refiner,
                 SurfaceFactory::Options().SetApproxLevelSmooth(level).SetApproxLevelSharp(level));
-            for (int face = 0; face < shape->GetNumFaces(); face += 7) {
+            for (int face = 0; face < shape->GetNumFaces(); ++face) {
                 Surface<float> surface;
                 ASSERT_TRUE(factory->InitVertexSurface(face, &surface));
-                auto const numControl = std::size_t(surface.GetNumControlPoints());
-                auto const numPoints = std::size_t(surface.GetNumPatchPoints());
-                std::vector<float> all(3 * numPoints);
-                surface.PreparePatchPoints(positions.data(), 3, all.data(), 3);
-                for (int const numPlaces : {1, 3, 10000}) {
-                    std::vector<float> uvs;
-                    for (Uv const &uv : findPlaces(surface.GetFaceSize(), numPlaces)) {
-                        uvs.insert(uvs.end(), uv.begin(), uv.end());
-                    }
-                    std::vector<float> some(all.size(), std::numeric_limits<float>::quiet_NaN());
-                    surface.GatherControlPoints(positions.data(), 3, some.data(), 3);
-                    surface.ComputePatchPoints(some.data(), 3, numPlaces, uvs.data());
-                    std::size_t numComputed = 0;
-                    for (std::size_t i = 0; i < all.size(); ++i) {
-                        if (some[i] == some[i]) {
-                            ++numComputed;
-                            ASSERT_EQ(some[i], all[i]);
-                        }
-                    }
-                    constexpr std::size_t kOfPatch = 20;
-                    EXPECT_LE(numComputed, 3 * (numControl + kOfPatch * std::size_t(numPlaces)));
-                    // Patches of quads in a lattice are sums of the control points.
-                    EXPECT_EQ(shape == &quads, numPoints == numControl);
-                    for (int i = 0; i < numPlaces; ++i) {
-                        float p[2][3];
-                        surface.Evaluate(&uvs[2 * std::size_t(i)], some.data(), 3, p[0]);
-                        surface.Evaluate(&uvs[2 * std::size_t(i)], all.data(), 3, p[1]);
-                        for (int k = 0; k < 3; ++k) {
-                            ASSERT_EQ(p[0][k], p[1][k]);
-                        }
-                    }
-                }
+                int const numPoints = surface.GetNumPatchPoints();
+                EXPECT_LT(numPoints, 300);
+                EXPECT_EQ(shape == &quads, numPoints == surface.GetNumControlPoints());
             }
         }
     }
