@@ -83,11 +83,12 @@ private:
     void addChild(ChildPatches<REAL> const &child, int numControlPoints);
     Part const &findPart(int &patch) const;
 
+    // What evaluation reads comes first.
+    std::vector<Part> _parts;
     int _level;
     int _numInFirst = 0; // patches of the first part
     int _numPoints = 0;
     PatchRows<REAL> _ofLattice;
-    std::vector<Part> _parts;
 };
 
 } // namespace OpenSubdivHex::BfrExt::internal
