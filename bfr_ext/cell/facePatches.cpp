@@ -56,12 +56,24 @@ void forEachChild(FaceShape shape, int numChildren, CornerAges const &ages,
     }
 }
 
+// What cells of a type share whose corners are as old.
+std::vector<int> makeKey(PatchAges const &ages, int numLevels) {
+    std::vector<int> key = ages.ofVertices;
+    key.push_back(ages.steps);
+    key.push_back(numLevels);
+    return key;
+}
+
 // The rows of the points of all patches that a cell is, some levels on.
 std::vector<std::vector<double>> findRows(CellType const &type, int steps, CornerAges const &ages,
                                           int numLevels) {
     std::vector<std::vector<double>> rows;
     if (numLevels == 0) {
-        std::vector<double> const all = type.FindPatchPoints(limitAges(steps, ages));
+        PatchAges const limited = limitAges(steps, ages);
+        std::vector<int> const key = makeKey(limited, 0);
+        auto const &all = type.GetPatterns().Get<std::vector<double>>(
+            PatternTable::GetKind<double>(PatternOf::PatchPoints), key.data(),
+            key.data() + key.size(), [&] { return type.FindPatchPoints(limited); });
         auto const numPoints = std::size_t(type.GetNumPoints());
         for (std::size_t i = 0; i < all.size(); i += numPoints) {
             rows.emplace_back(all.begin() + std::ptrdiff_t(i),
@@ -94,10 +106,7 @@ bool isUsed(std::vector<double> const *rows, std::size_t numRows, std::size_t co
 template <typename REAL>
 PatchRows<REAL> const &getRows(CellType const &type, int steps, CornerAges const &ages,
                                int numLevels) {
-    PatchAges const limited = limitAges(steps, ages);
-    std::vector<int> key = limited.ofVertices;
-    key.push_back(limited.steps);
-    key.push_back(numLevels);
+    std::vector<int> const key = makeKey(limitAges(steps, ages), numLevels);
     return type.GetPatterns().Get<PatchRows<REAL>>(
         PatternTable::GetKind<REAL>(PatternOf::PatchRows), key.data(), key.data() + key.size(),
         [&] { return PatchRows<REAL>(findRows(type, steps, ages, numLevels)); });

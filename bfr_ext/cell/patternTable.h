@@ -32,6 +32,7 @@ enum class PatternOf {
     RingCell,
     RingItem,
     SecondDerivatives,
+    PatchPoints,
     PatchRows,
     ChildPatches,
     FacePatches,
