@@ -9,8 +9,7 @@ namespace OpenSubdivHex::BfrExt {
 
 using FarExt::FaceShape;
 
-CellTree::CellTree(FaceShape shape)
-    : _shape(shape), _cells{{0, -1, 0, {-1, static_cast<signed char>(shape.isHalf ? 0 : -1)}}} {}
+CellTree::CellTree(FaceShape shape) : _shape(shape) {}
 
 CellTree::CellTree(FaceShape shape, int level)
     : CellTree(shape, std::vector<int>(std::size_t(shape.size), level).data(), level) {}
@@ -35,9 +34,11 @@ bool CellTree::isToRefine(int cell, int const edgeLevels[], int level) const {
 }
 
 int CellTree::GetMaxLevel() const {
-    return std::max_element(_cells.begin(), _cells.end(),
-                            [](Cell const &a, Cell const &b) { return a.level < b.level; })
-        ->level;
+    int level = 0;
+    for (Cell const &cell : _cells) {
+        level = std::max(level, int(cell.level));
+    }
+    return level;
 }
 
 int CellTree::Refine(int cell) {
@@ -53,6 +54,10 @@ int CellTree::Refine(int cell) {
         return parent.firstChild;
     }
     auto const level = short(parent.level + 1);
+    if (_cells.empty()) {
+        _cells.reserve(1 + std::size_t(GetNumChildren(cell)));
+        _cells.push_back(parent);
+    }
     _cells[std::size_t(cell)].firstChild = first;
     _numLeaves += GetNumChildren(cell) - 1;
     _cells.resize(_cells.size() + std::size_t(GetNumChildren(cell)));

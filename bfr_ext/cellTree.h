@@ -60,7 +60,7 @@ public:
     /// Vertices of the face.
     int GetFaceSize() const { return _shape.size; }
     /// All cells, with those that are refined.
-    int GetNumCells() const { return int(_cells.size()); }
+    int GetNumCells() const { return _cells.empty() ? 1 : int(_cells.size()); }
     /// Cells that are not refined.
     int GetNumLeaves() const { return _numLeaves; }
     /// The highest level that a cell has.
@@ -107,14 +107,17 @@ private:
     };
     friend class internal::FaceSections;
 
-    Cell const &getCell(int cell) const { return _cells[std::size_t(cell)]; }
+    Cell getFace() const {
+        return {0, -1, 0, {-1, static_cast<signed char>(_shape.isHalf ? 0 : -1)}};
+    }
+    Cell getCell(int cell) const { return _cells.empty() ? getFace() : _cells[std::size_t(cell)]; }
     bool isToRefine(int cell, int const edgeLevels[], int level) const;
     void addPoints(int cell, std::size_t edge, int start, int end,
                    std::vector<Polyline::Place> &places) const;
 
     FarExt::FaceShape _shape;
     int _numLeaves = 1;
-    std::vector<Cell> _cells;
+    std::vector<Cell> _cells; // none of a face that is not refined, as most of a forest
 };
 
 } // namespace OpenSubdivHex::BfrExt
