@@ -226,7 +226,6 @@ void FaceEvaluator<REAL>::evaluateBorder(TessellationData const &tessellation,
     auto const getResult = [&](int place) { return p + std::ptrdiff_t(place) * resultDesc.stride; };
     for (std::size_t edge = 0; edge < std::size_t(_face.size); ++edge) {
         int const first = tessellation.firstEdgeCoords[edge];
-        evaluator.EvaluateVertex(edge, getResult(first));
         int const numPlaces = tessellation.firstEdgeCoords[edge + 1] - first - 1;
         int const level = tessellation.GetEdgeLevel(edge);
         if (level < 0) {
@@ -237,6 +236,8 @@ void FaceEvaluator<REAL>::evaluateBorder(TessellationData const &tessellation,
         } else if (numPlaces > 0) {
             evaluator.EvaluateEdge(edge, level, getResult(first + 1), resultDesc.stride);
         }
+        // Last: an edge takes the points of all rings, of which the vertex has its own.
+        evaluator.EvaluateVertex(edge, getResult(first));
     }
 }
 

@@ -115,8 +115,8 @@ void RateEvaluator<REAL>::Evaluate(CellType const &type, REAL const *points,
                                    std::ptrdiff_t stride) {
     Source const source = {type, nullptr, 0, points, stride, nullptr};
     forEachEdge([&](int edge, int rate, int first) {
-        evaluateVertex(edge, first);
         evaluateEdge(edge, rate, first);
+        evaluateVertex(edge, first);
         if (_results[1]) {
             evaluateDerivativesOnEdge(source, edge, rate, first);
         }
@@ -142,8 +142,9 @@ void RateEvaluator<REAL>::Evaluate(PlainFaceType const &type) {
                 indices.data()};
     };
     forEachEdge([&](int edge, int rate, int first) {
-        evaluateVertex(edge, first);
+        // First: an edge takes the points of all rings, of which the vertex has its own.
         evaluateEdge(edge, rate, first);
+        evaluateVertex(edge, first);
         Source const source = getSource(std::size_t(edge) + 1);
         evaluateInside(source);
         if (_results[1]) {
