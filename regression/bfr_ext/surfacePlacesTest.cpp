@@ -247,6 +247,30 @@ TEST_P(SurfacePlacesTest, FacesMeet) {
     EXPECT_GT(numEdges, 100);
 }
 
+// What a cache has kept of other faces and levels changes no bit.
+TEST_P(SurfacePlacesTest, DoNotDependOnFacesBefore) {
+    for (Shape const &shape : {MakeTorus(6, 4, TorusFaces::IrregularTriangles), MakePrism(5)}) {
+        auto const refiner = CreateRefiner(shape, GetParam(), 0, getOptions());
+        BfrExt::SurfaceFactoryCache cache;
+        for (int const level : {4, 2, 3}) {
+            auto const options =
+                SurfaceFactory::Options().SetApproxLevelSmooth(level).SetApproxLevelSharp(level);
+            auto const factory = SurfaceFactory::Create(
+                *refiner, SurfaceFactory::Options(options).SetExternalCache(&cache));
+            for (int face = shape.GetNumFaces() - 1; face >= 0; --face) {
+                auto const fresh = SurfaceFactory::Create(*refiner, options);
+                PlacedSurface surfaces[2];
+                ASSERT_TRUE(surfaces[0].Init(*factory, shape.positions, face));
+                ASSERT_TRUE(surfaces[1].Init(*fresh, shape.positions, face));
+                for (Uv const &uv : findPlaces(surfaces[0].surface.GetFaceSize(), 20)) {
+                    ASSERT_EQ(surfaces[0].Evaluate(uv), surfaces[1].Evaluate(uv))
+                        << "level " << level << ", face " << face;
+                }
+            }
+        }
+    }
+}
+
 // Where a place is in its patch, and how that changes.
 TEST(SurfacePlaces, InPatchesChangeAsTheirDerivativesSay) {
     using BfrExt::internal::FindBfrPlace;
