@@ -188,7 +188,7 @@ public:
     /// @name Patch points
     /// The points that Evaluate() at (u, v) takes, of which patches are weighted sums: the control points and, but for faces in
     /// regular lattices of quads, triangles or hexagons, some 250 points of the second level behind them.  Types of faces share
-    /// the weights.  Make the points once for those of a mesh; they serve any number of evaluations, at any level of patches.
+    /// the weights.  Make the points once for those of a mesh; they serve any number of evaluations of this surface.
     /// @{
 
     /// Control points, and those of the second level where the face needs them.

@@ -236,7 +236,7 @@ void FaceEvaluator<REAL>::evaluateBorder(TessellationData const &tessellation,
         } else if (numPlaces > 0) {
             evaluator.EvaluateEdge(edge, level, getResult(first + 1), resultDesc.stride);
         }
-        // Last: an edge takes the points of all rings, of which the vertex has its own.
+        // The edge has made the points of all rings, and the vertex finds those of its own among them.
         evaluator.EvaluateVertex(edge, getResult(first));
     }
 }

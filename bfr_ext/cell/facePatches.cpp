@@ -734,7 +734,7 @@ void FacePatches<REAL>::MakePoints(BaseType const &type, REAL const *control, in
     maker.Init(size, stride, points);
     if (PlainFaceType const *const plain = type.GetPlain()) {
         maker.MakeOfRings(*plain, _level, control);
-    } else if (!type.IsInLattice()) {
+    } else {
         maker.MakeOfSteps(*type, _level, control);
     }
 }

@@ -58,7 +58,8 @@ public:
     std::size_t GetHeapSize() const { return GetHeapSizes(_ofLattice, _parts); }
     /// Points that the patches need besides the control points.
     int GetNumPoints() const { return _numPoints; }
-    /// Makes these from the control points, of \p size numbers each, from one to the next by \p stride.
+    /// \brief Makes these, outside of lattices, from the control points, of \p size numbers each, from one to the next by
+    /// \p stride.
     void MakePoints(BaseType const &type, REAL const *control, int size, std::ptrdiff_t stride,
                     REAL *points) const;
     /// Evaluates the patch of a place: the point, and derivatives by u and v as far as NUM_DERIVATIVES asks:

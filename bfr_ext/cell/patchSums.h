@@ -105,7 +105,7 @@ struct PatchWeights {
     REAL byUvTwice[3][5];
 };
 
-/// \brief Writes the point of a patch, and its derivatives, in the order of EvaluatePlace(), by what the machine has.
+/// \brief Writes the point of a patch, and its derivatives, in the order of FacePatches::Evaluate(), by what the machine has.
 ///
 /// The rows of the block are weighed, and so its columns, whose points are summed up.  The same bits for any size and stride
 /// of points.

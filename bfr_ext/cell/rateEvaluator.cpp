@@ -142,8 +142,8 @@ void RateEvaluator<REAL>::Evaluate(PlainFaceType const &type) {
                 indices.data()};
     };
     forEachEdge([&](int edge, int rate, int first) {
-        // First: an edge takes the points of all rings, of which the vertex has its own.
         evaluateEdge(edge, rate, first);
+        // The edge has made the points of all rings, and the vertex finds those of its own among them.
         evaluateVertex(edge, first);
         Source const source = getSource(std::size_t(edge) + 1);
         evaluateInside(source);

@@ -539,6 +539,7 @@ TEST(SurfacePlaces, HaveFewPatchPoints) {
     auto const triangles = MakeTorus(6, 5, TorusFaces::IrregularTriangles);
     for (Shape const *const shape : {&quads, &triangles, &GetFeatureShape("dartsTriangles")}) {
         auto const refiner = CreateRefiner(*shape, ReferenceMask::Smooth, 0, getOptions());
+        std::vector<int> numPoints[2];
         for (int const level : {2, 4}) {
             auto const factory = SurfaceFactory::Create(
                 *refiner,
@@ -546,11 +547,13 @@ TEST(SurfacePlaces, HaveFewPatchPoints) {
             for (int face = 0; face < shape->GetNumFaces(); ++face) {
                 Surface<float> surface;
                 ASSERT_TRUE(factory->InitVertexSurface(face, &surface));
-                int const numPoints = surface.GetNumPatchPoints();
-                EXPECT_LT(numPoints, 300);
-                EXPECT_EQ(shape == &quads, numPoints == surface.GetNumControlPoints());
+                int const number = surface.GetNumPatchPoints();
+                EXPECT_LT(number, 300);
+                EXPECT_EQ(shape == &quads, number == surface.GetNumControlPoints());
+                numPoints[level / 4].push_back(number);
             }
         }
+        EXPECT_EQ(numPoints[0], numPoints[1]);
     }
 }
 
