@@ -101,7 +101,7 @@ private:
     void orderFans(LimitPatch &patch);
     int findFirstFace(VertexFan const &fan, int &firstSide);
     void addFace(Index face, int local, bool isRing, LimitPatch &patch);
-    void addEdge(Index corner, Index edge, LimitPatch &patch);
+    void addEdge(Index corner, Index nextCorner, LimitPatch &patch);
     void addTags(LimitPatch &patch);
     void addSharpVertices(LimitPatch &patch);
     void addSharpEnds(LimitPatch &patch);
