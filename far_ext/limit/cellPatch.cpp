@@ -87,7 +87,7 @@ void GatherBaseCell(SurfaceFaces const &faces, Index face, Sdc::Options sdcOptio
 }
 
 CellPatch MakePlainBaseCell(std::vector<int> faceSizes, std::vector<Index> faceVerts, int numInner,
-                            int numPoints, bool hasSignature) {
+                            int numPoints) {
     auto const size = std::size_t(faceSizes[0]);
     auto const end = std::size_t(numPoints);
     CellPatch cell;
@@ -123,9 +123,6 @@ CellPatch MakePlainBaseCell(std::vector<int> faceSizes, std::vector<Index> faceV
     }
     patch.faceSizes = std::move(faceSizes);
     patch.faceVerts = std::move(faceVerts);
-    if (hasSignature) {
-        LimitPatchGatherer::AddSignature(patch);
-    }
     return cell;
 }
 

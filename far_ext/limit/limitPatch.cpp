@@ -433,7 +433,7 @@ void LimitPatchGatherer::addIrregularVertices(LimitPatch &patch) {
     }
 }
 
-void LimitPatchGatherer::AddSignature(LimitPatch &patch) {
+void LimitPatchGatherer::addSignature(LimitPatch &patch) {
     std::vector<int> &signature = patch.signature;
     // Most patches have no tags.
     constexpr std::size_t kNumSizes = 11;
@@ -486,7 +486,9 @@ void LimitPatchGatherer::AddSignature(LimitPatch &patch) {
         patch);
 }
 
+// Patches of a level that are gathered one after the other are of similar sizes.
 void LimitPatchGatherer::clear(LimitPatch &patch) {
+    std::size_t const numCorners = _corners.size();
     _numComplete = 0;
     _verts.Clear();
     _faces.Clear();
@@ -496,6 +498,9 @@ void LimitPatchGatherer::clear(LimitPatch &patch) {
     _ringFaces.clear();
     _ringEdges.clear();
     patch = LimitPatch();
+    patch.faceVerts.reserve(numCorners);
+    patch.otherCorners.reserve(numCorners);
+    patch.edgeSharpness.reserve(numCorners);
 }
 
 // The vertices whose faces are all there come first: the centres, for which the patch is made and
@@ -540,7 +545,6 @@ void LimitPatchGatherer::addNeighborhood(int numCenters, LimitPatch &patch) {
     addSharpVertices(patch);
     addSharpEnds(patch);
     addIrregularVertices(patch);
-    AddSignature(patch);
 }
 
 // Which of the edges of a fan leads to the first centre; numEdges where none does.
@@ -566,6 +570,7 @@ void LimitPatchGatherer::Gather(Index vert, LimitPatch &patch) {
     addVertex(_level.GetVertexCorner(_level.vertFirstFace[vert]), patch);
     orderFans(patch);
     addNeighborhood(1, patch);
+    addSignature(patch);
 }
 
 void LimitPatchGatherer::GatherFan(Index corner, LimitPatch &patch) {
@@ -574,6 +579,7 @@ void LimitPatchGatherer::GatherFan(Index corner, LimitPatch &patch) {
     addVertex(corner, patch);
     orderFans(patch);
     addNeighborhood(1, patch);
+    addSignature(patch);
 }
 
 int LimitPatchGatherer::GatherCell(Index face, int const *locals, int numCorners,
@@ -732,11 +738,13 @@ PatchRefinement MakePatchStep(Refinement const &refinement, HexSchemeOptions con
     step.numParentVerts = refinement.parent->numVertices;
     step.firsts.reserve(cVerts.size() + 1);
     step.firsts.push_back(0);
+    constexpr std::size_t kUsualSize = 16; // of rows
+    step.verts.reserve(cVerts.size() * kUsualSize);
+    step.weights.reserve(cVerts.size() * kUsualSize);
     RowAppender appender(step);
     for (Index cVert : cVerts) {
-        ForEachParentWeight(refinement, *rules, cVert, [&](Index pVert, double weight) {
-            appender.Add(pVert, weight);
-        });
+        ForEachParentWeight(refinement, *rules, cVert,
+                            [&](Index pVert, double weight) { appender.Add(pVert, weight); });
         appender.EndRow();
     }
     return step;
