@@ -19,7 +19,7 @@ void HexLevelWriter::listOpenVertices() {
     for (Index pEdge : _p.boundaryEdges) {
         _openVerts.insert(_openVerts.end(), _p.edgeVerts[pEdge].begin(), _p.edgeVerts[pEdge].end());
     }
-    SortUnique(_openVerts);
+    SortUnique(_openVerts, _p.numVertices);
     VertexOffsets shift = {0, 0};
     _vVertexShifts.reserve(_openVerts.size() + 1);
     _vVertexShifts.push_back(shift);
