@@ -17,23 +17,22 @@ namespace {
 /// Numbers of a point that are summed up at once.
 constexpr int kNumPointLanes = 4;
 
-/// \brief A register of each number of some points, a lane for each point.
+/// \brief Some points, number by number: a register of each, with a lane for each point.
 template <typename REAL>
 struct PointColumns {
     using Columns = Registers<REAL, 32>;
+    using Numbers = typename Columns::Lanes[kNumPointLanes];
     using Point = Registers<REAL, kNumPointLanes * sizeof(REAL)>;
     static_assert(PatchBlock<REAL>::kGroup == int(Columns::kSize));
 
     /// Of points of \p size numbers.
-    OPENSUBDIVHEX_INLINE void Load(REAL const *points, std::ptrdiff_t stride, int size,
-                                   int const *indices);
-    /// The sum of all lanes.
-    OPENSUBDIVHEX_INLINE typename Point::Lanes SumUp() const;
-
-    typename Columns::Lanes numbers[kNumPointLanes];
+    OPENSUBDIVHEX_INLINE static void Load(REAL const *points, std::ptrdiff_t stride, int size,
+                                          int const *indices, Numbers &numbers);
+    /// The sum of all points.
+    OPENSUBDIVHEX_INLINE static typename Point::Lanes SumUp(Numbers const &numbers);
 };
 
-#ifdef __AVX2__
+#if defined(__GNUC__) && defined(__AVX2__)
 /// Turns rows of four numbers into columns, in each half of the registers.
 OPENSUBDIVHEX_INLINE void transposeFour(__m256 const (&rows)[4], __m256 (&columns)[4]) {
     __m256d const low01 = _mm256_castps_pd(_mm256_unpacklo_ps(rows[0], rows[1]));
@@ -58,7 +57,8 @@ OPENSUBDIVHEX_INLINE void transposeFour(__m256d const (&rows)[4], __m256d (&colu
 
 template <>
 OPENSUBDIVHEX_INLINE void PointColumns<float>::Load(float const *points, std::ptrdiff_t stride,
-                                                    int size, int const *indices) {
+                                                    int size, int const *indices,
+                                                    Numbers &numbers) {
     __m128i const wanted = _mm_cmpgt_epi32(_mm_set1_epi32(size), _mm_setr_epi32(0, 1, 2, 3));
     auto const load = [&](int i) { return _mm_maskload_ps(points + indices[i] * stride, wanted); };
     __m256 const rows[4] = {_mm256_set_m128(load(4), load(0)), _mm256_set_m128(load(5), load(1)),
@@ -66,7 +66,7 @@ OPENSUBDIVHEX_INLINE void PointColumns<float>::Load(float const *points, std::pt
     transposeFour(rows, numbers);
 }
 template <>
-OPENSUBDIVHEX_INLINE auto PointColumns<float>::SumUp() const -> Point::Lanes {
+OPENSUBDIVHEX_INLINE auto PointColumns<float>::SumUp(Numbers const &numbers) -> Point::Lanes {
     __m256 rows[4];
     transposeFour(numbers, rows);
     __m256 const sum = (rows[0] + rows[1]) + (rows[2] + rows[3]);
@@ -75,7 +75,8 @@ OPENSUBDIVHEX_INLINE auto PointColumns<float>::SumUp() const -> Point::Lanes {
 
 template <>
 OPENSUBDIVHEX_INLINE void PointColumns<double>::Load(double const *points, std::ptrdiff_t stride,
-                                                     int size, int const *indices) {
+                                                     int size, int const *indices,
+                                                     Numbers &numbers) {
     __m256i const wanted =
         _mm256_cmpgt_epi64(_mm256_set1_epi64x(size), _mm256_setr_epi64x(0, 1, 2, 3));
     auto const load = [&](int i) {
@@ -85,7 +86,7 @@ OPENSUBDIVHEX_INLINE void PointColumns<double>::Load(double const *points, std::
     transposeFour(rows, numbers);
 }
 template <>
-OPENSUBDIVHEX_INLINE auto PointColumns<double>::SumUp() const -> Point::Lanes {
+OPENSUBDIVHEX_INLINE auto PointColumns<double>::SumUp(Numbers const &numbers) -> Point::Lanes {
     __m256d rows[4];
     transposeFour(numbers, rows);
     return (rows[0] + rows[1]) + (rows[2] + rows[3]);
@@ -93,7 +94,7 @@ OPENSUBDIVHEX_INLINE auto PointColumns<double>::SumUp() const -> Point::Lanes {
 #else
 template <typename REAL>
 OPENSUBDIVHEX_INLINE void PointColumns<REAL>::Load(REAL const *points, std::ptrdiff_t stride,
-                                                   int size, int const *indices) {
+                                                   int size, int const *indices, Numbers &numbers) {
     for (int k = 0; k < kNumPointLanes; ++k) {
         numbers[k] = {};
         for (std::size_t i = 0; k < size && i < Columns::kSize; ++i) {
@@ -102,7 +103,8 @@ OPENSUBDIVHEX_INLINE void PointColumns<REAL>::Load(REAL const *points, std::ptrd
     }
 }
 template <typename REAL>
-OPENSUBDIVHEX_INLINE auto PointColumns<REAL>::SumUp() const -> typename Point::Lanes {
+OPENSUBDIVHEX_INLINE auto PointColumns<REAL>::SumUp(Numbers const &numbers) ->
+    typename Point::Lanes {
     typename Point::Lanes sum{};
     for (std::size_t i = 0; i < Columns::kSize; ++i) {
         for (std::size_t k = 0; k < kNumPointLanes; ++k) {
@@ -166,20 +168,18 @@ public:
                 weighColumns(rows, weights[i]);
             }
             for (int i = 0; i < numGroups; ++i, columns += kGroup) {
-                PointColumns<REAL> group;
-                group.Load(_all.points + first, stride, size, columns);
+                ColumnLanes numbers[kNumPointLanes];
+                PointColumns<REAL>::Load(_all.points + first, stride, size, columns, numbers);
                 for (int sum = 0; sum < kNumSums; ++sum) {
                     for (int k = 0; k < size; ++k) {
-                        Columns::AddProducts(sums[sum][k], weights[i][sum], group.numbers[k]);
+                        Columns::AddProducts(sums[sum][k], weights[i][sum], numbers[k]);
                     }
                 }
             }
         }
         typename Point::Lanes bySt[kNumSums];
         for (int i = 0; i < kNumSums; ++i) {
-            PointColumns<REAL> sum;
-            std::copy_n(sums[i], kNumPointLanes, sum.numbers);
-            bySt[i] = sum.SumUp();
+            bySt[i] = PointColumns<REAL>::SumUp(sums[i]);
         }
         // Adds some of these by factors.
         auto const write = [&](int result, auto const &...factors) {

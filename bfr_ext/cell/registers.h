@@ -2,13 +2,12 @@
 #ifndef OPENSUBDIVHEX_BFR_EXT_CELL_REGISTERS_H
 #define OPENSUBDIVHEX_BFR_EXT_CELL_REGISTERS_H
 
-#include "far_ext/vtr/inline.h"
+#include "lanes.h"
 
 #include <cstddef>
-#include <type_traits>
 #include <utility>
 
-#ifdef __FMA__
+#if defined(__GNUC__) && defined(__AVX2__)
 #include <immintrin.h>
 #endif
 
@@ -17,64 +16,26 @@
 namespace OpenSubdivHex::BfrExt::internal {
 namespace {
 
-/// Numbers that are computed with at once, in a register where the machine has such.
-template <typename REAL, std::size_t BYTES>
-struct PlainLanes {
-    static constexpr std::size_t kSize = BYTES / sizeof(REAL);
+/// Bytes of the registers that the compiler may use; 0: it has no types for them.
+#if !defined(__GNUC__)
+constexpr std::size_t kRegisterSize = 0;
+#elif defined(__AVX512F__)
+constexpr std::size_t kRegisterSize = 64;
+#elif defined(__AVX2__)
+constexpr std::size_t kRegisterSize = 32;
+#else
+constexpr std::size_t kRegisterSize = 16;
+#endif
 
-    PlainLanes operator*(PlainLanes const &other) const {
-        PlainLanes result;
-        for (std::size_t i = 0; i < kSize; ++i) {
-            result.values[i] = values[i] * other.values[i];
-        }
-        return result;
-    }
-    PlainLanes &operator+=(PlainLanes const &other) {
-        for (std::size_t i = 0; i < kSize; ++i) {
-            values[i] += other.values[i];
-        }
-        return *this;
-    }
-    PlainLanes operator+(PlainLanes const &other) const { return PlainLanes(*this) += other; }
-    REAL &operator[](std::size_t i) { return values[i]; }
-    REAL operator[](std::size_t i) const { return values[i]; }
-
-    REAL values[kSize];
-};
-
-template <typename REAL, std::size_t BYTES>
+template <typename REAL, std::size_t BYTES, bool FITS = BYTES <= kRegisterSize>
 struct LanesOf {
-    using Type = PlainLanes<REAL, BYTES>;
+    using Type = Lanes<REAL, BYTES / sizeof(REAL)>;
 };
 #if defined(__GNUC__)
-template <>
-struct LanesOf<float, 16> {
-    using Type = float __attribute__((vector_size(16)));
+template <typename REAL, std::size_t BYTES>
+struct LanesOf<REAL, BYTES, true> {
+    using Type __attribute__((vector_size(BYTES))) = REAL;
 };
-template <>
-struct LanesOf<double, 16> {
-    using Type = double __attribute__((vector_size(16)));
-};
-#ifdef __AVX2__
-template <>
-struct LanesOf<float, 32> {
-    using Type = float __attribute__((vector_size(32)));
-};
-template <>
-struct LanesOf<double, 32> {
-    using Type = double __attribute__((vector_size(32)));
-};
-#endif
-#ifdef __AVX512F__
-template <>
-struct LanesOf<float, 64> {
-    using Type = float __attribute__((vector_size(64)));
-};
-template <>
-struct LanesOf<double, 64> {
-    using Type = double __attribute__((vector_size(64)));
-};
-#endif
 #endif
 
 /// Lanes as they lie in memory, aligned no more than numbers are.  They are read and written as such and
@@ -87,6 +48,31 @@ struct
     LanesInMemory {
     LANES lanes;
 };
+
+/// Sums with products, which are rounded once where the machine fuses the two.
+template <typename LANES>
+OPENSUBDIVHEX_INLINE LANES addProducts(LANES const &sums, LANES const &a, LANES const &b) {
+    return sums + a * b;
+}
+#if defined(__GNUC__) && defined(__AVX2__) && defined(__FMA__)
+OPENSUBDIVHEX_INLINE __m128 addProducts(__m128 const &sums, __m128 const &a, __m128 const &b) {
+    return _mm_fmadd_ps(a, b, sums);
+}
+OPENSUBDIVHEX_INLINE __m256 addProducts(__m256 const &sums, __m256 const &a, __m256 const &b) {
+    return _mm256_fmadd_ps(a, b, sums);
+}
+OPENSUBDIVHEX_INLINE __m256d addProducts(__m256d const &sums, __m256d const &a, __m256d const &b) {
+    return _mm256_fmadd_pd(a, b, sums);
+}
+#endif
+#if defined(__GNUC__) && defined(__AVX512F__)
+OPENSUBDIVHEX_INLINE __m512 addProducts(__m512 const &sums, __m512 const &a, __m512 const &b) {
+    return _mm512_fmadd_ps(a, b, sums);
+}
+OPENSUBDIVHEX_INLINE __m512d addProducts(__m512d const &sums, __m512d const &a, __m512d const &b) {
+    return _mm512_fmadd_pd(a, b, sums);
+}
+#endif
 
 /// What kernels compute with.
 template <typename REAL, std::size_t BYTES>
@@ -101,41 +87,15 @@ struct Registers {
     OPENSUBDIVHEX_INLINE static void Store(Lanes const &lanes, REAL *to) {
         reinterpret_cast<LanesInMemory<Lanes> *>(to)->lanes = lanes;
     }
-
     /// The same number in all lanes.
     OPENSUBDIVHEX_INLINE static Lanes Spread(REAL number) {
         return spread(number, std::make_index_sequence<kSize>());
     }
-    /// Adds products to sums, which are rounded once where the registers are those of machines that fuse the two.
     OPENSUBDIVHEX_INLINE static void AddProducts(Lanes &sums, Lanes const &a, Lanes const &b) {
-#ifdef __AVX512F__
-        if constexpr (BYTES == 64 && std::is_same_v<REAL, float>) {
-            sums = Lanes(_mm512_fmadd_ps(__m512(a), __m512(b), __m512(sums)));
-            return;
-        }
-        if constexpr (BYTES == 64 && std::is_same_v<REAL, double>) {
-            sums = Lanes(_mm512_fmadd_pd(__m512d(a), __m512d(b), __m512d(sums)));
-            return;
-        }
-#endif
-#if defined(__AVX2__) && defined(__FMA__)
-        if constexpr (BYTES == 16 && std::is_same_v<REAL, float>) {
-            sums = Lanes(_mm_fmadd_ps(__m128(a), __m128(b), __m128(sums)));
-            return;
-        }
-        if constexpr (BYTES == 32 && std::is_same_v<REAL, float>) {
-            sums = Lanes(_mm256_fmadd_ps(__m256(a), __m256(b), __m256(sums)));
-            return;
-        }
-        if constexpr (BYTES == 32 && std::is_same_v<REAL, double>) {
-            sums = Lanes(_mm256_fmadd_pd(__m256d(a), __m256d(b), __m256d(sums)));
-            return;
-        }
-#endif
-        sums += a * b;
+        sums = addProducts(sums, a, b);
     }
     OPENSUBDIVHEX_INLINE static void AddProducts(Lanes &sums, Lanes const &factors, REAL factor) {
-        AddProducts(sums, factors, Spread(factor));
+        sums = addProducts(sums, factors, Spread(factor));
     }
 
 private:
