@@ -260,7 +260,7 @@ template <int NUM_DERIVATIVES, typename REAL>
 void sumUpPatch(PatchSums<REAL> const &sums) {
     PatchKernel<NUM_DERIVATIVES, REAL> const kernel(sums);
     if (sums.size == 3 && sums.stride == 3) { // by far the most
-        std::integral_constant<int, 3> constexpr kThree;
+        constexpr std::integral_constant<int, 3> kThree{};
         kernel.Write(0, kThree, kThree);
         return;
     }

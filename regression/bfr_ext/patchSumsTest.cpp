@@ -81,8 +81,7 @@ public:
     RandomBlock(int numColumns, std::mt19937 &random) : _columns(kNumPoints) {
         std::iota(_columns.begin(), _columns.end(), 0);
         std::shuffle(_columns.begin(), _columns.end(), random);
-        constexpr int kGroup = PatchBlock<REAL>::kGroup;
-        int const paddedSize = (numColumns + kGroup - 1) / kGroup * kGroup;
+        int const paddedSize = PatchBlock<REAL>::GetPaddedSize(numColumns);
         _columns.resize(std::size_t(numColumns));
         _columns.resize(std::size_t(paddedSize), _columns[0]);
         std::uniform_real_distribution<double> uniform(-1, 1);
