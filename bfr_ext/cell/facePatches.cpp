@@ -223,14 +223,13 @@ public:
 
     void MakeOfRings(PlainFaceType const &type, int level, REAL const *control) {
         FaceRings const &face = type.GetRings();
-        _rings.Set(face.GetRings(), std::size_t(type.GetNumPoints()), nullptr, control, _stride,
-                   _size);
+        _rings.Set(face.GetRings(), nullptr,
+                   {control, _stride, _size, std::size_t(type.GetNumPoints()), nullptr});
         REAL const *const ofRings = _rings.GetPoints();
         for (std::size_t i = 0; i <= face.GetRings().GetRings().size(); ++i) {
             RingCell const &child = face.GetChild(i);
             std::vector<int> const &sources = getPatches<REAL>(child, level).GetSources();
-            _indices.resize(child.GetColumns().size());
-            face.FindChildIndices(i, _indices.data());
+            _rings.FindChildIndices(face, i, _indices);
             if (child.IsInner()) {
                 // What the step makes is there.
                 for (int const source : sources) {
