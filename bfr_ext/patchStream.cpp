@@ -45,35 +45,6 @@ private:
     Far::Index _count;
 };
 
-/// \brief The points of some vertices of the mesh, each made by the first face that asked for it.
-///
-/// Plain faces make the same point of a vertex that they share, to the bit.
-template <typename REAL>
-class KnownVertices {
-public:
-    /// The point of a vertex, of \p size numbers; make(point) writes it where it is not known.
-    template <typename MAKE>
-    REAL const *Find(Far::Index vertex, std::size_t size, MAKE const &make) {
-        if (_vertices.empty()) {
-            _vertices.assign(kNumPlaces, Far::INDEX_INVALID);
-            _points.resize(kNumPlaces * size);
-        }
-        std::size_t const place = std::size_t(vertex) % kNumPlaces;
-        REAL *const point = &_points[place * size];
-        if (_vertices[place] != vertex) {
-            make(point);
-            _vertices[place] = vertex;
-        }
-        return point;
-    }
-
-private:
-    static constexpr std::size_t kNumPlaces = 4096;
-
-    std::vector<Far::Index> _vertices;
-    std::vector<REAL> _points;
-};
-
 } // namespace
 
 /// \brief The data of a stream, with all that it does.
@@ -226,53 +197,32 @@ public:
     }
 
 private:
-    // Gathers the control points of the surface, without gaps.
-    void gather(REAL const *meshPoints, PointDescriptor const &desc) {
-        _controlPoints.resize(std::size_t(_surface.GetNumControlPoints()) * std::size_t(desc.size));
-        _surface.GatherControlPoints(meshPoints, desc, _controlPoints.data(), desc.size);
+    // Makes the surface of a face, and evaluates it at all places of the tessellation; results: as of FaceEvaluator.
+    bool evaluate(Index face, FarExt::Interpolation interpolation, int channel,
+                  LevelTessellation const &tessellation, REAL const *points,
+                  PointDescriptor const &desc, internal::SharedRings<REAL> &shared,
+                  REAL *const (&results)[6], CallStatus &status) {
+        status = _factory.TryInit(face, interpolation, channel, _surface);
+        if (status.IsOk()) {
+            internal::FaceEvaluator<REAL>(_surface.GetFace(), points, desc, &shared)
+                .Evaluate(tessellation.GetData(), results, PointDescriptor(desc.size));
+        }
+        return status.IsOk();
     }
 
     bool evaluatePoints(Index face, LevelTessellation const &tessellation, CallStatus &status) {
-        status = _factory.TryInit(face, FarExt::Interpolation::Vertex, -1, _surface);
-        if (!status.IsOk()) {
-            return false;
-        }
-        PointDescriptor const desc(_meshPointDesc.size);
-        std::size_t const size = std::size_t(tessellation.GetNumCoords()) * std::size_t(desc.size);
+        std::size_t const size =
+            std::size_t(tessellation.GetNumCoords()) * std::size_t(_meshPointDesc.size);
         _points.resize(size);
-        bool const hasVerticesAlone = tessellation.GetNumSections() == 1 &&
-                                      tessellation.GetNumCoords() == tessellation.GetFaceSize();
-        if (hasVerticesAlone && !_stream._options.HasDerivatives() &&
-            _surface.GetFace().type.GetPlain()) {
-            evaluateVertices(face);
-            return true;
-        }
-        gather(_meshPoints, _meshPointDesc);
+        REAL *results[6] = {_points.data()};
         if (_stream._options.HasDerivatives()) {
             _du.resize(size);
             _dv.resize(size);
-            _surface.Evaluate(tessellation, _controlPoints.data(), desc, _points.data(), _du.data(),
-                              _dv.data(), desc);
-        } else {
-            _surface.Evaluate(tessellation, _controlPoints.data(), desc, _points.data(), desc);
+            results[1] = _du.data();
+            results[2] = _dv.data();
         }
-        return true;
-    }
-
-    // Of a plain face whose tessellation has no other places.
-    void evaluateVertices(Index face) {
-        PointDescriptor const desc(_meshPointDesc.size);
-        auto const pointSize = std::size_t(desc.size);
-        for (int local = 0; local < _surface.GetFaceSize(); ++local) {
-            auto const make = [&](REAL *result) {
-                gather(_meshPoints, _meshPointDesc);
-                internal::FaceEvaluator<REAL>(_surface.GetFace(), _controlPoints.data(), desc)
-                    .EvaluateVertex(local, result);
-            };
-            REAL const *const point =
-                _vertices.Find(_factory.GetFaces().GetVertex(face, local), pointSize, make);
-            std::copy_n(point, pointSize, &_points[std::size_t(local) * pointSize]);
-        }
+        return evaluate(face, FarExt::Interpolation::Vertex, -1, tessellation, _meshPoints,
+                        _meshPointDesc, _shared, results, status);
     }
 
     bool evaluateValues(Index face, LevelTessellation const &tessellation, CallStatus &status) {
@@ -282,19 +232,22 @@ private:
                 values.channel == Values::kVarying
                     ? FarExt::Interpolation::Varying
                     : FarExt::internal::GetChannelInterpolation(_factory.GetMesh(), values.channel);
-            status = _factory.TryInit(face, interpolation, values.channel, _surface);
-            if (!status.IsOk()) {
+            std::vector<REAL> &result = _results[i].numbers;
+            result.resize(std::size_t(tessellation.GetNumCoords()) * std::size_t(values.desc.size));
+            REAL *const results[6] = {result.data()};
+            if (!evaluate(face, interpolation, values.channel, tessellation, values.values,
+                          values.desc, _results[i].shared, results, status)) {
                 return false;
             }
-            PointDescriptor const desc(values.desc.size);
-            gather(values.values, values.desc);
-            std::vector<REAL> &result = _results[i];
-            result.resize(std::size_t(tessellation.GetNumCoords()) * std::size_t(desc.size));
-            _surface.Evaluate(tessellation, _controlPoints.data(), desc, result.data(), desc);
             _resultStarts[i] = result.data();
         }
         return true;
     }
+
+    struct Results {
+        std::vector<REAL> numbers;
+        internal::SharedRings<REAL> shared;
+    };
 
     Data const &_stream;
     TessellationFinder _finder;
@@ -304,12 +257,11 @@ private:
     std::vector<Values> const &_values;
     Sink const &_sink;
     Surface<REAL> _surface;
-    KnownVertices<REAL> _vertices;
-    std::vector<REAL> _controlPoints;
+    internal::SharedRings<REAL> _shared;
     std::vector<REAL> _points;
     std::vector<REAL> _du;
     std::vector<REAL> _dv;
-    std::vector<std::vector<REAL>> _results; // of values
+    std::vector<Results> _results; // of values
     std::vector<REAL const *> _resultStarts;
 };
 

@@ -87,8 +87,8 @@ void CellGrid::Sample(CellType const &type, double const *controlPoints,
 void CellGrid::Sample(PlainFaceType const &type, double const *controlPoints,
                       std::vector<double> &samples) {
     sampleBase(controlPoints, type.GetNumPoints(), samples, [&] {
-        _ringValues.Set(type.GetRings().GetRings(), std::size_t(type.GetNumPoints()), nullptr,
-                        _basePoints.data(), 3, 3);
+        _ringValues.Set(type.GetRings().GetRings(), nullptr,
+                        {_basePoints.data(), 3, 3, std::size_t(type.GetNumPoints()), nullptr});
         _baseEvaluator.Evaluate(type, _ringValues, getPlan(false), _baseSamples.data(), 3);
     });
 }

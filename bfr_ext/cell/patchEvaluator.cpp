@@ -235,17 +235,13 @@ void PatchEvaluator<REAL>::evaluate(PlainFaceType const &type, RingValues<REAL> 
     _size = values.GetSize();
     _paddedSize = values.GetPaddedSize();
     FaceRings const &face = type.GetRings();
-    if (plan[0].corners.empty() && plan[0].children.empty()) {
-        return; // no ring is needed
-    }
     REAL const *const ofRings = values.GetPoints();
-    evaluateCorners(face, plan[0], ofRings);
+    evaluateCorners(face, values, plan[0]);
     for (std::size_t const next : plan[0].children) {
         CellPlan::Node const &child = plan[next];
         RingCell const &cell = face.GetChild(child.child);
         std::vector<int> const &columns = cell.GetColumns();
-        _indices.resize(columns.size());
-        face.FindChildIndices(child.child, _indices.data());
+        values.FindChildIndices(face, child.child, _indices);
         if (child.leaf) {
             evaluateLeaf(cell.GetType(), &cell, child, ofRings, std::ptrdiff_t(_paddedSize),
                          _indices.data());
@@ -353,13 +349,12 @@ void PatchEvaluator<REAL>::evaluateCorners(CellType const &type, CellPlan::Node 
 
 // A base face, from the points of its rings.
 template <typename REAL>
-void PatchEvaluator<REAL>::evaluateCorners(FaceRings const &face, CellPlan::Node const &cell,
-                                           REAL const *points) {
+void PatchEvaluator<REAL>::evaluateCorners(FaceRings const &face, RingValues<REAL> &values,
+                                           CellPlan::Node const &cell) {
     for (CellPlan::CornerPlace const &corner : cell.corners) {
         RingCell const &child = face.GetChild(corner.corner + 1);
-        _indices.resize(child.GetColumns().size());
-        face.FindChildIndices(corner.corner + 1, _indices.data());
-        evaluateCorner(getFaceDerivatives<REAL>(child), corner, points);
+        values.FindChildIndices(face, corner.corner + 1, _indices);
+        evaluateCorner(getFaceDerivatives<REAL>(child), corner, values.GetPoints());
     }
 }
 

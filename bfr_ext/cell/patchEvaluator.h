@@ -50,7 +50,8 @@ private:
                       REAL const *points, std::ptrdiff_t stride, int const *indices);
     void turnDerivatives(CellPlan::Node const &leaf) const;
     void evaluateCorners(CellType const &type, CellPlan::Node const &cell, REAL const *points);
-    void evaluateCorners(FaceRings const &face, CellPlan::Node const &cell, REAL const *points);
+    void evaluateCorners(FaceRings const &face, RingValues<REAL> &values,
+                         CellPlan::Node const &cell);
     void evaluateCorners(RingCell const &child, CellPlan::Node const &cell, REAL const *points);
     void evaluateCorner(PlaceMatrix<REAL> const &derivatives, CellPlan::CornerPlace const &corner,
                         REAL const *points);

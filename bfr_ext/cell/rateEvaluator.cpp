@@ -132,12 +132,12 @@ void RateEvaluator<REAL>::Evaluate(PlainFaceType const &type) {
     RingValues<REAL> &values = _border.GetRingValues();
     auto const getSource = [&](std::size_t child) -> Source {
         RingCell const &cell = face.GetChild(child);
-        indices.resize(cell.GetColumns().size());
-        face.FindChildIndices(child, indices.data());
+        REAL const *const points = values.GetPoints();
+        values.FindChildIndices(face, child, indices);
         return {cell.GetType(),
                 &cell,
                 child,
-                values.GetPoints(),
+                points,
                 std::ptrdiff_t(values.GetPaddedSize()),
                 indices.data()};
     };
