@@ -52,7 +52,7 @@ private:
 /// and values of varying and face-varying data.  (Patches of a Far::PatchTable are something else.)
 ///
 /// **Memory** is the sum of Options::SetMaxMemory() and the cache of the factory, with 8 bytes for each corner and vertex of
-/// the mesh.
+/// the mesh, and with a thread's own during a call: its patch, and up to 1.2 megabytes for points and for each of the Values.
 ///
 /// A face whose tessellation would take more than a fourth of SetMaxMemory() has a patch for each of its *sections*
 /// (LevelTessellation::GetSection()).  Neighbouring sections share the points on their boundaries, as faces do.  Points have
@@ -137,7 +137,7 @@ public:
         /// Patches with the same levels share a tessellation.  If not all tessellations fit, patches that share one are made
         /// in succession, so that few tessellations are made twice.
         ///
-        /// A thread has one patch, and 4096 points of vertices.  Making a tessellation takes about 300 bytes a point: a face
+        /// Making a tessellation takes about 300 bytes a point: a face
         /// may take a fourth of the bytes that are set, or 3 megabytes if these are more (4 with derivatives).  Faces that
         /// take more come in sections.  A single cell is never cut: it has all points that finer edges of the face, or cells
         /// beside it, have on its sides.

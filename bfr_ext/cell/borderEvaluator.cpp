@@ -88,9 +88,9 @@ void BorderEvaluator<REAL>::EvaluateVertex(std::size_t vert, REAL *result) {
         evaluateVertex(vert, result);
         return;
     }
-    REAL const *const point = _points->GetShared()->FindSurfacePoint(
-        _points->GetFace().GetPoints()[vert], _paddedSize,
-        [&](REAL *shared) { evaluateVertex(vert, shared); });
+    REAL const *const point =
+        _points->GetShared()->FindSurfacePoint(_points->GetFace().GetPoints()[vert], _paddedSize,
+                                               [&](REAL *shared) { evaluateVertex(vert, shared); });
     std::copy_n(point, GetSize(), result);
 }
 
@@ -162,8 +162,8 @@ void BorderEvaluator<REAL>::setEdge(std::size_t edge) {
         RingCell const &cell = *item.rings->cell;
         REAL const *const points = _edgeValues.GetPoints();
         _indices.resize(cell.GetColumns().size());
-        cell.GetPlaces().FindIndices(
-            [&](int ring) { return _edgeValues.GetPointsOfRing(ring, 0); }, _indices.data());
+        cell.GetPlaces().FindIndices([&](int ring) { return _edgeValues.GetPointsOfRing(ring, 0); },
+                                     _indices.data());
         _edge = {&cell.GetType(), &cell, points, std::ptrdiff_t(_paddedSize), _indices.data()};
     } else {
         CellType::Child const &longEdge = item.type->GetChildren()[0];

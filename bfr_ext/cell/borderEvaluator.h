@@ -73,8 +73,8 @@ private:
     void evaluateVertex(std::size_t vert, REAL *result);
     void setEdge(std::size_t edge);
     void sumUp(PlaceMatrix<REAL> const &matrix, REAL *results, std::ptrdiff_t resultStride) const {
-        SumUpPlaces(
-            matrix, {_edge.points, _edge.stride, GetSize(), _edge.indices, results, resultStride});
+        SumUpPlaces(matrix,
+                    {_edge.points, _edge.stride, GetSize(), _edge.indices, results, resultStride});
     }
 
     CellType const *_type = nullptr;

@@ -28,8 +28,7 @@ void FaceEvaluator<REAL>::Evaluate(TessellationData const &tessellation, REAL *c
 
 template <typename REAL>
 void FaceEvaluator<REAL>::Evaluate(OpenSubdiv::Bfr::Tessellation const &tessellation,
-                                   REAL *const results[3],
-                                   PointDescriptor const &resultDesc) {
+                                   REAL *const results[3], PointDescriptor const &resultDesc) {
     useBorder([&](BorderEvaluator<REAL> &border) {
         RateEvaluator<REAL> evaluator(tessellation, border, results, resultDesc.stride);
         if (PlainFaceType const *const plain = _face.type.GetPlain()) {

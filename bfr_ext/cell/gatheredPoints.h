@@ -44,12 +44,7 @@ public:
     ///
     /// \param indices  which points of the face they are, or null: all in turn
     RingSources<REAL> GetSources(std::size_t numPoints, int const *indices) const {
-        return {_points,
-                _stride,
-                _size,
-                numPoints,
-                indices,
-                _shared ? _face.GetPoints() : nullptr,
+        return {_points, _stride, _size, numPoints, indices, _shared ? _face.GetPoints() : nullptr,
                 _shared};
     }
     /// Null where faces do not share any.

@@ -134,11 +134,7 @@ void RateEvaluator<REAL>::Evaluate(PlainFaceType const &type) {
         RingCell const &cell = face.GetChild(child);
         REAL const *const points = values.GetPoints();
         values.FindChildIndices(face, child, indices);
-        return {cell.GetType(),
-                &cell,
-                child,
-                points,
-                std::ptrdiff_t(values.GetPaddedSize()),
+        return {cell.GetType(), &cell, child, points, std::ptrdiff_t(values.GetPaddedSize()),
                 indices.data()};
     };
     forEachEdge([&](int edge, int rate, int first) {

@@ -354,7 +354,8 @@ void RingValues<REAL>::make(std::size_t ring, REAL *last) {
         grow(_controlPoints, (_sources.numPoints + 1) * _paddedSize);
         REAL *to = _controlPoints.data();
         for (std::size_t i = 0; i < _sources.numPoints; ++i, to += _paddedSize) {
-            StepMatrix::Pad(_sources.points + std::ptrdiff_t(_sources.GetPoint(i)) * _sources.stride,
+            StepMatrix::Pad(_sources.points +
+                                std::ptrdiff_t(_sources.GetPoint(i)) * _sources.stride,
                             _sources.size, to);
         }
         std::fill_n(to, _paddedSize, REAL(0));

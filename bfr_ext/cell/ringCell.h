@@ -349,8 +349,7 @@ public:
         return points;
     }
     /// Finds which of them a child of the face has that has the rings.
-    void FindChildIndices(FaceRings const &face, std::size_t child,
-                          std::vector<int> &indices) {
+    void FindChildIndices(FaceRings const &face, std::size_t child, std::vector<int> &indices) {
         RingPlaces const &places = face.GetChild(child).GetPlaces();
         indices.resize(places.GetColumns().size());
         face.FindChildIndices(

@@ -60,9 +60,7 @@ struct Ring {
     static constexpr std::size_t GetNumOthers(RingStep step) {
         return step == RingStep::First ? 2 : 8;
     }
-    std::size_t GetNumPoints(RingStep step) const {
-        return getNumPoints(0, GetNumFaces(), step);
-    }
+    std::size_t GetNumPoints(RingStep step) const { return getNumPoints(0, GetNumFaces(), step); }
     /// A turn that was counted on by up to a round, or back by one.
     int GetTurn(int turn) const {
         return turn < 0 ? turn + GetNumFaces() : turn < GetNumFaces() ? turn : turn - GetNumFaces();

@@ -14,31 +14,33 @@ namespace OpenSubdivHex::BfrExt::internal {
 
 namespace Far = OpenSubdiv::Far;
 
-/// \brief The rings of some vertices of a mesh, and the points of the surface there, each made by the first face that asked
-/// for it: other faces make the same, to the bit.
+/// \brief The rings of some vertices of a mesh, and the points of the surface there, each made by the first face that asks
+/// for it: other faces would make the same, to the bit.
 ///
-/// New points take the place of those that were made first, in a block of some size; its memory is touched as far as it is
-/// used.  What was found stays until half of the block was written anew.  One thread uses it at a time, with points of one
-/// array and one size.
+/// The points lie in one block of memory, in which new ones overwrite the oldest.  Points that are found stay until half of
+/// the block is overwritten.  One thread uses an object at a time, for one array of points of one size.
 template <typename REAL>
 class SharedRings {
 public:
-    /// Bytes of the points; each of up to kNumEntries vertices takes some 20 bytes more.
-    static constexpr std::size_t kNumBytes = std::size_t(2) << 20;
+    /// Of the points; up to kNumEntries vertices take 24 more each.
+    static constexpr std::size_t kNumBytes = std::size_t(1) << 20;
 
-    /// Whether points can be found that are so many together, of \p paddedSize numbers each.
-    bool HasRoom(std::size_t numPoints, std::size_t paddedSize) const {
+    /// Whether the rings of a face with so many points stay until the face is done.
+    ///
+    /// \param paddedSize  numbers of a point, here and below
+    static bool HasRoom(std::size_t numPoints, std::size_t paddedSize) {
         return numPoints <= getCapacity(paddedSize) / 8;
     }
-    /// The points of all vertices, where there are any.
+    /// The points of all vertices; null before the first is made.
     REAL const *GetPoints() const { return _numbers.get(); }
 
+    /// Whether FindRing() would make nothing.
     bool HasRing(Far::Index vertex, std::size_t paddedSize) {
         return isKnown(getEntry(vertex, paddedSize).ring);
     }
-    /// \brief The first point of a vertex's ring among GetPoints(), behind which they all lie.
+    /// \brief The number of the first of the points of a vertex's ring among GetPoints(); they are one behind the other.
     ///
-    /// \param make  writes them where they are not known
+    /// \param make  make(points) writes them where they are not known
     template <typename MAKE>
     std::size_t FindRing(Far::Index vertex, std::size_t numPoints, std::size_t paddedSize,
                          MAKE const &make) {
@@ -53,7 +55,7 @@ public:
     }
 
 private:
-    // Numbers of points, counted from the beginning of time: the place of one is the rest by the capacity.
+    // Numbers of points that count on where the block begins anew: modulo the capacity they are places in the block.
     struct Entry {
         Far::Index vertex = Far::INDEX_INVALID;
         std::uint64_t ring = 0; // 0: not known

@@ -179,21 +179,21 @@ void expectBitsOfSurfaces(Shape const &shape, SurfaceCase const &surfaceCase, in
     for (int const numThreads : {1, 3}) {
         ThreadsScope const threads(numThreads);
         std::atomic<int> numPatches(0);
-        ASSERT_TRUE(stream.Run(
-            meshPoints.data(), size, values, faces, [&](typename Stream::Patch const &patch) {
-                ++numPatches;
-                Surface<REAL> surface;
-                factory->InitVertexSurface(patch.face, &surface);
-                expectEqual(surface, meshPoints, patch.tessellation,
-                            {patch.points, patch.du, patch.dv});
-                factory->InitVaryingSurface(patch.face, &surface);
-                expectEqual(surface, others, patch.tessellation,
-                            {patch.values[0], nullptr, nullptr});
-                factory->InitFaceVaryingSurface(patch.face, &surface);
-                expectEqual(surface, channel, patch.tessellation,
-                            {patch.values[1], nullptr, nullptr});
-                return !testing::Test::HasFailure();
-            }));
+        ASSERT_TRUE(stream.Run(meshPoints.data(), size, values, faces,
+                               [&](typename Stream::Patch const &patch) {
+                                   ++numPatches;
+                                   Surface<REAL> surface;
+                                   factory->InitVertexSurface(patch.face, &surface);
+                                   expectEqual(surface, meshPoints, patch.tessellation,
+                                               {patch.points, patch.du, patch.dv});
+                                   factory->InitVaryingSurface(patch.face, &surface);
+                                   expectEqual(surface, others, patch.tessellation,
+                                               {patch.values[0], nullptr, nullptr});
+                                   factory->InitFaceVaryingSurface(patch.face, &surface);
+                                   expectEqual(surface, channel, patch.tessellation,
+                                               {patch.values[1], nullptr, nullptr});
+                                   return !testing::Test::HasFailure();
+                               }));
         EXPECT_GT(numPatches, 800);
         std::shuffle(faces.begin(), faces.end(), random);
     }

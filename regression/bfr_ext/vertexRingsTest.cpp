@@ -254,8 +254,8 @@ private:
         ownValues.Set(item.rings->rings, ownTurns,
                       getSources(points, item.points.size(), item.points.data()));
         double const *const own = ownValues.GetPoints();
-        cell->GetPlaces().FindIndices(
-            [&](int ring) { return ownValues.GetPointsOfRing(ring, 0); }, indices.data());
+        cell->GetPlaces().FindIndices([&](int ring) { return ownValues.GetPointsOfRing(ring, 0); },
+                                      indices.data());
         EXPECT_EQ(ofFace, pickCell(cell->GetPlaces(), own, indices)) << "edge " << edge;
         CellType const &longEdge = *item.type->GetChildren()[0].type;
         expectAlike(*cell, longEdge);
