@@ -39,74 +39,15 @@ private:
     Function _ofEdges;
 };
 
-/// \brief Evaluates the surfaces of all base faces in bounded memory: hands each to a *sink* and forgets it.
-///
-/// \code
-///     BfrExt::PatchStream<float> const stream(*factory, BfrExt::PatchLevels(5));
-///     stream.Run(positions, 3, [&](BfrExt::PatchStream<float>::Patch const &patch) {
-///         return Write(patch.points, patch.tessellation.GetNumCoords()); // false ends the stream
-///     });
-/// \endcode
-///
-/// The sink gets a *patch* for each base face that is no hole: a tessellation, its points and, if asked for, derivatives
-/// and values of varying and face-varying data.  (Patches of a Far::PatchTable are something else.)
-///
-/// **Memory** is the sum of Options::SetMaxMemory() and the cache of the factory, with 8 bytes for each corner and vertex of
-/// the mesh.
-///
-/// A face whose tessellation would take more than a fourth of SetMaxMemory() has a patch for each of its *sections*
-/// (LevelTessellation::GetSection()).  Neighbouring sections share the points on their boundaries, as faces do.  Points have
-/// the bits that they have in the whole face.  Facets are the same, too, except that a hexagon between two sections comes as
-/// two halves where facets are polygons.
-///
-///  - Two patches that share an edge have the same points on it, to the bit.  Exceptions are those of Surface::Evaluate() of a
-///    tessellation.
-///  - With a CellForest, patches have the tessellations of its trees: each is made with its patch and forgotten with it.
-///  - A patch depends on its face and the options alone, to the bit: not on the number of threads, nor on the other faces of
-///    the call.  So several processes may share the faces of a mesh.  Their machines and builds must all use AVX-512 or AVX2
-///    with FMA, or all use neither: these fuse products with sums.
-///  - Points inside a face are those of Surface::Evaluate(), except for rounding.
-///
-/// Several threads may call Run() of one stream at once.  std::bad_alloc passes through.
-template <typename REAL>
-class OPENSUBDIVHEX_API PatchStream {
+namespace internal {
+class StreamData;
+}
+
+/// \brief What the streams of both precisions have in common: options, and the tessellations of patches.
+class OPENSUBDIVHEX_API PatchTessellations {
 public:
     /// A base face or an edge of the base mesh.
     using Index = Far::Index;
-    /// The size of points and the distance from one to the next.
-    using PointDescriptor = typename Surface<REAL>::PointDescriptor;
-
-    /// \brief The patch of a base face, or of a section of it, that a sink gets; valid during the call.
-    struct Patch {
-        Index face; ///< the base face
-        LevelTessellation const
-            &tessellation;  ///< the places of the points, and the facets between them
-        REAL const *points; ///< tessellation.GetNumCoords() points, without gaps
-        int pointSize;      ///< numbers of a point
-        /// As many derivatives by u as points, of the same size; null unless options ask for them.
-        REAL const *du = nullptr;
-        REAL const *dv = nullptr; ///< by v
-        /// By number of what Run() was given besides: tessellation.GetNumCoords() values, without gaps.
-        REAL const *const *values = nullptr;
-    };
-
-    /// \brief Values that patches have in addition to points: varying or face-varying data.
-    struct Values {
-        /// No channel: varying data.
-        static constexpr int kVarying = -1;
-
-        REAL const *values; ///< of SurfaceFactory::GetLevel(), by vertex or by value of the channel
-        PointDescriptor desc;   ///< their size, and the distance from one to the next
-        int channel = kVarying; ///< of face-varying data
-    };
-
-    /// \brief Takes a patch.
-    ///
-    /// It is called by the threads of the call, several at once, each time with another patch, in any
-    /// order.  What it throws ends the stream and passes through.
-    ///
-    /// \return  false to end the stream: some patches may still come
-    using Sink = std::function<bool(Patch const &)>;
 
     /// \brief Facets and memory.
     class Options {
@@ -156,6 +97,122 @@ public:
         std::size_t _maxMemory = std::size_t(4) << 20;
     };
 
+    /// The number of patches of a face: 1, or its sections.  The face is in range, and its levels or tree are valid.
+    int GetNumSections(Index face) const;
+    /// The tessellation of such a face as a whole, however much memory it takes.
+    LevelTessellation MakeTessellation(Index face) const;
+    /// The tessellation of a section, 0 ... GetNumSections(face) - 1, as the patches of the face have it.
+    LevelTessellation MakeTessellation(Index face, int section) const;
+
+    /// Takes the face and the tessellation of a patch, as a sink takes a patch.
+    using TessellationSink = std::function<bool(Index face, LevelTessellation const &tessellation)>;
+    /// \brief Hands out the tessellations of all patches, as Run() makes them, without points: for callers that
+    /// must know all patches before the first point.
+    ///
+    /// \return  as that of Run()
+    bool RunTessellations(TessellationSink const &sink, FarExt::CallStatus *status = nullptr) const;
+
+    /// \brief The sections of a face, as polygons in it.
+    ///
+    /// A *corner* is a vertex of one of these polygons, in the order of the boundary of the section's tessellation
+    /// (LevelTessellation::GetVertexPlace()).  Where sections meet, their corners have the same vertex.
+    struct SectionPolygons {
+        std::vector<int> firstCorners; ///< by section; then their end
+        std::vector<int> vertices;     ///< by corner
+        /// By vertex: the edge of the face on which it lies, for a vertex of the face the edge that begins there; -1: inside
+        /// the face.
+        std::vector<int> edges;
+        /// By vertex on an edge: the number of its point among those of LevelTessellation::GetEdgeCoords() of the whole
+        /// face; -1: it is the vertex of the face.
+        std::vector<int> edgePoints;
+    };
+    /// The sections of a face with more than one (GetNumSections()); empty for other faces.
+    SectionPolygons GetSectionPolygons(Index face) const;
+
+    /// The factory that was given.
+    SurfaceFactory const &GetFactory() const;
+    /// The levels that were given; with a forest: 0.
+    PatchLevels const &GetLevels() const;
+    /// The forest that was given, or null.
+    CellForest const *GetForest() const;
+    /// The options that were given.
+    Options const &GetOptions() const;
+
+protected:
+    /// \param forest  null: levels
+    PatchTessellations(SurfaceFactory const &factory, PatchLevels levels, CellForest const *forest,
+                       Options const &options);
+
+    std::shared_ptr<internal::StreamData const> _data; ///< never null: copied where it is moved
+};
+
+/// \brief Evaluates the surfaces of all base faces in bounded memory: hands each to a *sink* and forgets it.
+///
+/// \code
+///     BfrExt::PatchStream<float> const stream(*factory, BfrExt::PatchLevels(5));
+///     stream.Run(positions, 3, [&](BfrExt::PatchStream<float>::Patch const &patch) {
+///         return Write(patch.points, patch.tessellation.GetNumCoords()); // false ends the stream
+///     });
+/// \endcode
+///
+/// The sink gets a *patch* for each base face that is no hole: a tessellation, its points and, if asked for, derivatives
+/// and values of varying and face-varying data.  (Patches of a Far::PatchTable are something else.)
+///
+/// **Memory** is the sum of Options::SetMaxMemory() and the cache of the factory, with 8 bytes for each corner and vertex of
+/// the mesh.
+///
+/// A face whose tessellation would take more than a fourth of SetMaxMemory() has a patch for each of its *sections*
+/// (LevelTessellation::GetSection()).  Neighbouring sections share the points on their boundaries, as faces do.  Points have
+/// the bits that they have in the whole face.  Facets are the same, too, except that a hexagon between two sections comes as
+/// two halves where facets are polygons.
+///
+///  - Two patches that share an edge have the same points on it, to the bit.  Exceptions are those of Surface::Evaluate() of a
+///    tessellation.
+///  - With a CellForest, patches have the tessellations of its trees: each is made with its patch and forgotten with it.
+///  - A patch depends on its face and the options alone, to the bit: not on the number of threads, nor on the other faces of
+///    the call.  So several processes may share the faces of a mesh.  Their machines and builds must all use AVX-512 or AVX2
+///    with FMA, or all use neither: these fuse products with sums.
+///  - Points inside a face are those of Surface::Evaluate(), except for rounding.
+///
+/// Several threads may call Run() of one stream at once.  std::bad_alloc passes through.
+template <typename REAL>
+class OPENSUBDIVHEX_API PatchStream : public PatchTessellations {
+public:
+    /// The size of points and the distance from one to the next.
+    using PointDescriptor = typename Surface<REAL>::PointDescriptor;
+
+    /// \brief The patch of a base face, or of a section of it, that a sink gets; valid during the call.
+    struct Patch {
+        Index face; ///< the base face
+        LevelTessellation const
+            &tessellation;  ///< the places of the points, and the facets between them
+        REAL const *points; ///< tessellation.GetNumCoords() points, without gaps
+        int pointSize;      ///< numbers of a point
+        /// As many derivatives by u as points, of the same size; null unless options ask for them.
+        REAL const *du = nullptr;
+        REAL const *dv = nullptr; ///< by v
+        /// By number of what Run() was given besides: tessellation.GetNumCoords() values, without gaps.
+        REAL const *const *values = nullptr;
+    };
+
+    /// \brief Values that patches have in addition to points: varying or face-varying data.
+    struct Values {
+        /// No channel: varying data.
+        static constexpr int kVarying = -1;
+
+        REAL const *values; ///< of SurfaceFactory::GetLevel(), by vertex or by value of the channel
+        PointDescriptor desc;   ///< their size, and the distance from one to the next
+        int channel = kVarying; ///< of face-varying data
+    };
+
+    /// \brief Takes a patch.
+    ///
+    /// It is called by the threads of the call, several at once, each time with another patch, in any
+    /// order.  What it throws ends the stream and passes through.
+    ///
+    /// \return  false to end the stream: some patches may still come
+    using Sink = std::function<bool(Patch const &)>;
+
     /// A stream of surfaces for vertex data, with the default options.
     ///
     /// \param factory  makes the surfaces; it must live as long
@@ -163,14 +220,16 @@ public:
     PatchStream(SurfaceFactory const &factory, PatchLevels levels)
         : PatchStream(factory, std::move(levels), Options()) {}
     /// Overload with options.
-    PatchStream(SurfaceFactory const &factory, PatchLevels levels, Options const &options);
+    PatchStream(SurfaceFactory const &factory, PatchLevels levels, Options const &options)
+        : PatchTessellations(factory, std::move(levels), nullptr, options) {}
 
     /// \brief A stream of the cells of trees.
     ///
     /// \param factory  makes the surfaces; it must live as long
     /// \param forest   of the same refiner, after MatchEdges(); it must live as long
     /// \param options  facets and memory
-    PatchStream(SurfaceFactory const &factory, CellForest const &forest, Options const &options);
+    PatchStream(SurfaceFactory const &factory, CellForest const &forest, Options const &options)
+        : PatchTessellations(factory, PatchLevels(0), &forest, options) {}
     /// Overload with default options.
     PatchStream(SurfaceFactory const &factory, CellForest const &forest)
         : PatchStream(factory, forest, Options()) {}
@@ -215,52 +274,6 @@ public:
     bool Run(REAL const meshPoints[], PointDescriptor const &meshPointDesc,
              std::vector<Values> const &values, std::vector<Index> const &faces, Sink const &sink,
              FarExt::CallStatus *status = nullptr) const;
-
-    /// The number of patches of a face: 1, or its sections.  The face is in range, and its levels or tree are valid.
-    int GetNumSections(Index face) const;
-    /// The tessellation of such a face as a whole, however much memory it takes.
-    LevelTessellation MakeTessellation(Index face) const;
-    /// The tessellation of a section, 0 ... GetNumSections(face) - 1, as the patches of the face have it.
-    LevelTessellation MakeTessellation(Index face, int section) const;
-
-    /// Takes the face and the tessellation of a patch, as a sink takes a patch.
-    using TessellationSink = std::function<bool(Index face, LevelTessellation const &tessellation)>;
-    /// \brief Hands out the tessellations of all patches, as Run() makes them, without points: for callers that
-    /// must know all patches before the first point.
-    ///
-    /// \return  as that of Run()
-    bool RunTessellations(TessellationSink const &sink, FarExt::CallStatus *status = nullptr) const;
-
-    /// \brief The sections of a face, as polygons in it.
-    ///
-    /// A *corner* is a vertex of one of these polygons, in the order of the boundary of the section's tessellation
-    /// (LevelTessellation::GetVertexPlace()).  Where sections meet, their corners have the same vertex.
-    struct SectionPolygons {
-        std::vector<int> firstCorners; ///< by section; then their end
-        std::vector<int> vertices;     ///< by corner
-        /// By vertex: the edge of the face on which it lies, for a vertex of the face the edge that begins there; -1: inside
-        /// the face.
-        std::vector<int> edges;
-        /// By vertex on an edge: the number of its point among those of LevelTessellation::GetEdgeCoords() of the whole
-        /// face; -1: it is the vertex of the face.
-        std::vector<int> edgePoints;
-    };
-    /// The sections of a face with more than one (GetNumSections()); empty for other faces.
-    SectionPolygons GetSectionPolygons(Index face) const;
-
-    /// The factory that was given.
-    SurfaceFactory const &GetFactory() const;
-    /// The levels that were given; with a forest: 0.
-    PatchLevels const &GetLevels() const;
-    /// The forest that was given, or null.
-    CellForest const *GetForest() const;
-    /// The options that were given.
-    Options const &GetOptions() const;
-
-private:
-    class Data;
-
-    std::shared_ptr<Data const> _data; // never null: copied where it is moved
 };
 
 extern template class PatchStream<float>;
