@@ -2,7 +2,6 @@
 #include "patchStream.h"
 
 #include "cell/faceEvaluator.h"
-#include "stream/forestData.h"
 #include "stream/patchPlans.h"
 
 #include "far_ext/executor.h"
@@ -271,7 +270,7 @@ CallStatus StreamData::checkFaces(AskedFaces const &faces, bool &arePlansKept) c
                                              " trees, the mesh " +
                                              std::to_string(base.GetNumFaces()) + " faces");
     }
-    if (forest && &forest->GetData().faces.GetLevel() != &base.GetLevel()) {
+    if (forest && &forest->GetFaces().GetLevel() != &base.GetLevel()) {
         return FarExt::internal::Failure(StatusCode::InvalidArgument,
                                          "the forest is that of another refiner");
     }
@@ -470,7 +469,7 @@ private:
             _planKey.clear();
             return;
         }
-        _stream.forest->GetData().GetKey(face, _treeKey);
+        _stream.forest->GetTessellationKey(face, _treeKey);
         if (_treeKey != _planKey) {
             _plan.reset();
             _plan = _stream.plans.Find(_treeKey, [&] { return _stream.MakeWhole(face); });

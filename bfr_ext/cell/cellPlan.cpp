@@ -14,8 +14,16 @@ constexpr int kNumStepsOfHalves = 4;
 constexpr int kNumStepsOfWholes = 3;
 constexpr int kNumStepsOfFaces = 5; // in lattices
 
-// Sorts runs by their rows, and joins those that follow one another.
-void joinRuns(std::vector<PlaceRun> &runs) {
+LeafPlaces const &getHalfPlaces(int numSteps) {
+    static std::array<LeafPlaces, kNumStepsOfHalves + 1> const kPlaces = {
+        LeafPlaces(FaceShape(), 0), LeafPlaces(FaceShape(), 1), LeafPlaces(FaceShape(), 2),
+        LeafPlaces(FaceShape(), 3), LeafPlaces(FaceShape(), 4)};
+    return kPlaces[std::size_t(numSteps)];
+}
+
+} // namespace
+
+void JoinRuns(std::vector<PlaceRun> &runs) {
     std::sort(runs.begin(), runs.end(),
               [](PlaceRun const &a, PlaceRun const &b) { return a.row < b.row; });
     std::size_t numJoined = 0;
@@ -33,15 +41,6 @@ void joinRuns(std::vector<PlaceRun> &runs) {
     runs.resize(numJoined);
     runs.shrink_to_fit();
 }
-
-LeafPlaces const &getHalfPlaces(int numSteps) {
-    static std::array<LeafPlaces, kNumStepsOfHalves + 1> const kPlaces = {
-        LeafPlaces(FaceShape(), 0), LeafPlaces(FaceShape(), 1), LeafPlaces(FaceShape(), 2),
-        LeafPlaces(FaceShape(), 3), LeafPlaces(FaceShape(), 4)};
-    return kPlaces[std::size_t(numSteps)];
-}
-
-} // namespace
 
 struct CellPlan::Apart {
     std::once_flag once;
@@ -226,7 +225,7 @@ void CellPlan::addPlace(LeafPlaces::Place place, Pair const (&toCoords)[2], int 
 
 void CellPlan::finish() {
     for (Node &node : _nodes) {
-        joinRuns(node.runs);
+        JoinRuns(node.runs);
         node.corners.shrink_to_fit();
     }
     _nodes.shrink_to_fit();

@@ -49,6 +49,9 @@ private:
     std::map<Key, std::size_t> _rows;
 };
 
+/// Sorts runs by their rows, and joins those that follow one another.
+void JoinRuns(std::vector<PlaceRun> &runs);
+
 /// \brief Which cells the places inside of a base face lie in: a base face is taken apart step by step
 /// into *leaves*, cells whose places are made at once, by a dense matrix of the cell's type
 /// (PlaceMatrix).
@@ -98,6 +101,8 @@ public:
     /// \param shape  of a whole cell; size 0: of half cells
     CellPlan(FaceShape shape, int numSteps);
 
+    /// Whether it is for derivatives.
+    bool HasDerivatives() const { return _use == Use::Derivatives; }
     /// Node 0 is the face, or the cell.
     Node const &operator[](std::size_t node) const { return _nodes[node]; }
     /// \brief The plan of a leaf's places whose leaves are its children, or else have the places at their corners; made

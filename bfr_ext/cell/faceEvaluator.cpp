@@ -111,20 +111,18 @@ void FaceEvaluator<REAL>::evaluateLeaves(TessellationData const &tessellation, R
         results[1] ? &tessellation.GetCellPlan(isInLattice, true) : nullptr;
     if (!plain) {
         evaluator.Evaluate(*_face.type, plan, _pointDesc.size, _controlPoints, _pointDesc.stride,
-                           results[0], resultDesc.stride);
+                           results, resultDesc.stride);
         if (ofDerivatives) {
-            evaluator.EvaluateDerivatives(*_face.type, *ofDerivatives, _pointDesc.size,
-                                          _controlPoints, _pointDesc.stride, results[1], results[2],
-                                          resultDesc.stride);
+            evaluator.Evaluate(*_face.type, *ofDerivatives, _pointDesc.size, _controlPoints,
+                               _pointDesc.stride, results + 1, resultDesc.stride);
         }
     }
     useBorder([&](BorderEvaluator<REAL> &border) {
         if (plain) {
             RingValues<REAL> &values = border.GetRingValues();
-            evaluator.Evaluate(*plain, values, plan, results[0], resultDesc.stride);
+            evaluator.Evaluate(*plain, values, plan, results, resultDesc.stride);
             if (ofDerivatives) {
-                evaluator.EvaluateDerivatives(*plain, values, *ofDerivatives, results[1],
-                                              results[2], resultDesc.stride);
+                evaluator.Evaluate(*plain, values, *ofDerivatives, results + 1, resultDesc.stride);
             }
         }
         evaluateBorder(tessellation, border, results[0], resultDesc);
