@@ -2,7 +2,7 @@
 #include "patchStream.h"
 
 #include "cell/faceEvaluator.h"
-#include "stream/patchPlans.h"
+#include "cell/patchPlans.h"
 
 #include "far_ext/executor.h"
 #include "far_ext/stencil/interpolationMode.h"
@@ -218,7 +218,7 @@ Far::Index StreamData::takeFaces(AskedFaces const &faces, Index next, Batch &bat
             continue;
         }
         GetLevels(face, ofFace);
-        numLeaves += FaceSections::CountLeaves(ofFace);
+        numLeaves += FaceSections::CountLeaves(ofFace.shape, ofFace.levels.back());
         std::size_t hash = ofFace.shape.isHalf ? 1 : 0;
         for (int const level : ofFace.levels) {
             hash = (hash ^ std::size_t(level + 1)) * 0x9e3779b97f4a7c15;

@@ -106,10 +106,10 @@ public:
 
     /// Takes the face and the tessellation of a patch, as a sink takes a patch.
     using TessellationSink = std::function<bool(Index face, LevelTessellation const &tessellation)>;
-    /// \brief Hands out the tessellations of all patches, as Run() makes them, without points: for callers that
+    /// \brief Hands out the tessellations of all patches, as PatchStream::Run() makes them, without points: for callers that
     /// must know all patches before the first point.
     ///
-    /// \return  as that of Run()
+    /// \return  as that of PatchStream::Run()
     bool RunTessellations(TessellationSink const &sink, FarExt::CallStatus *status = nullptr) const;
 
     /// \brief The sections of a face, as polygons in it.

@@ -63,6 +63,17 @@ std::shared_ptr<internal::TypeCache> getCache(SurfaceFactory::Options const &opt
 
 } // namespace
 
+SurfaceFactoryCache::SurfaceFactoryCache(std::size_t maxMemory)
+    : _types(std::make_shared<internal::TypeCache>(maxMemory)) {}
+
+SurfaceFactoryCache::~SurfaceFactoryCache() = default;
+
+std::size_t SurfaceFactoryCache::GetMaxMemory() const { return _types->GetMaxMemory(); }
+
+std::size_t SurfaceFactoryCache::GetMemory() const { return _types->GetMemory(); }
+
+std::size_t SurfaceFactoryCache::GetNumTypes() const { return _types->GetNumTypes(); }
+
 SurfaceFactory::SurfaceFactory(FarExt::TopologyRefiner const &refiner, Options options)
     : _refiner(refiner), _level(refiner.GetLevel(refiner.GetHexSchemeOptions().GetSurfaceLevel())),
       _faces(_level.GetLevel()), _numRefinements(refiner.GetNumRefinements()), _options(options),
@@ -143,25 +154,21 @@ bool SurfaceFactory::hasRefinedAgain() const {
     return _level.GetDepth() > 0 && _refiner.GetNumRefinements() != _numRefinements;
 }
 
-bool SurfaceFactory::isFace(Index face) const {
-    return 0 <= face && face < GetNumFaces() && !hasRefinedAgain() && !_faces.IsHole(face);
-}
-
 CallStatus SurfaceFactory::checkIsFace(Index face) const {
-    if (isFace(face)) {
-        return CallStatus();
-    }
     if (hasRefinedAgain()) {
         return FarExt::internal::Failure(
             StatusCode::InvalidArgument,
             "the refiner has refined again since the factory was made");
     }
-    bool const isHole = 0 <= face && face < GetNumFaces();
+    bool const isInRange = 0 <= face && face < GetNumFaces();
+    if (isInRange && !_faces.IsHole(face)) {
+        return CallStatus();
+    }
     std::string const name = "face " + std::to_string(face);
     return CallStatus(StatusCode::InvalidArgument, ComponentType::Face, face,
-                      isHole ? name + " is a hole, which has no surface"
-                             : name + " is not one of the " + std::to_string(GetNumFaces()) +
-                                   " faces of level " + std::to_string(_level.GetDepth()));
+                      isInRange ? name + " is a hole, which has no surface"
+                                : name + " is not one of the " + std::to_string(GetNumFaces()) +
+                                      " faces of level " + std::to_string(_level.GetDepth()));
 }
 
 CallStatus SurfaceFactory::CheckFace(Index face) const {
@@ -283,8 +290,8 @@ struct SurfaceFactory::FaceMaker {
 internal::BaseFace const *SurfaceFactory::makeFace(Types const &types, Index face,
                                                    Interpolation interpolation, int channel,
                                                    FaceMaker &maker, CallStatus &status) const {
-    if (!isFace(face)) {
-        status = checkIsFace(face);
+    status = checkIsFace(face);
+    if (!status.IsOk()) {
         return nullptr;
     }
     FarExt::internal::Hierarchy const &hierarchy = _refiner.GetHierarchy();

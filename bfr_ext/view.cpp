@@ -347,18 +347,18 @@ private:
     CellGrid *_grid = nullptr; // of the cell that was sampled last
     std::size_t _sampled = std::size_t(-1);
     bool _isSharp = false; // whether something sharp is near that
-    RefinedCells &_cells = getCellsOfThread();
-    std::vector<double> &_samples = getSamplesOfThread();
+    // Of the thread, whose memory is kept for the next face.
+    struct Scratch {
+        static Scratch &Get() {
+            static thread_local Scratch scratch;
+            return scratch;
+        }
 
-    // Their memory is kept for the next face.
-    static RefinedCells &getCellsOfThread() {
-        static thread_local RefinedCells cells;
-        return cells;
-    }
-    static std::vector<double> &getSamplesOfThread() {
-        static thread_local std::vector<double> samples;
-        return samples;
-    }
+        RefinedCells cells;
+        std::vector<double> samples;
+    };
+    RefinedCells &_cells = Scratch::Get().cells;
+    std::vector<double> &_samples = Scratch::Get().samples;
 };
 
 /// A ball around some points.

@@ -22,9 +22,14 @@ constexpr double kExpected = 0.22;
 } // namespace
 
 CellGrid::CellGrid(FaceShape shape)
-    : _shape(shape), _places(shape, kNumSteps), _plan(shape, kNumSteps) {
+    : _shape(shape), _places(shape, kNumSteps),
+      _plan(shape, kNumSteps, _places.GetAll(), CellPlan::Use::AllPoints, true),
+      _planOfBase(shape, kNumSteps, _places.GetAll(), CellPlan::Use::AllPoints, shape.size == 0) {
     auto const &corners = HalfCell::kCorners;
-    add({shape.size > 0, 0, 1, {corners[0], corners[1], corners[2], corners[3]}}, kNumSteps);
+    add(shape.size > 0
+            ? CellOutline<Pair>::MakeWhole(1)
+            : CellOutline<Pair>::MakeHalf(0, {corners[0], corners[1], corners[2], corners[3]}),
+        kNumSteps);
 }
 
 CellGrid &CellGrid::Get(FaceShape shape) {
@@ -33,21 +38,16 @@ CellGrid &CellGrid::Get(FaceShape shape) {
 }
 
 // Adds a cell, and those that some steps make of it.
-int CellGrid::add(Shape const &shape, int numSteps) {
+int CellGrid::add(CellOutline<Pair> const &outline, int numSteps) {
     std::size_t const number = _cells.size();
     _cells.emplace_back();
     _cells[number].factor = numSteps == kNumSteps ? kFactorOfCell : kFactorOfChildren;
-    int const numCorners = shape.isWhole ? _shape.size : 4;
-    for (int i = 0; i < numCorners; ++i) {
-        int const sample = int(_places.Find(
-            shape.isWhole ? PlaceOnEdge<Pair>(_shape, i, shape.scale, 0.0)
-                          : LeafPlaces::Place{shape.sector, shape.corners[std::size_t(i)]}));
-        _cells[number].corners.push_back(sample);
+    for (int i = 0; i < outline.GetNumCorners(_shape); ++i) {
+        _cells[number].corners.push_back(int(_places.Find(outline.GetCorner(_shape, i))));
     }
     _cells[number].samples = _cells[number].corners;
-    int const numChildren = shape.isWhole ? _shape.GetNumSectors() + 1 : 4;
-    for (int i = 0; numSteps > 0 && i < numChildren; ++i) {
-        int const child = add(getChild(shape, i), numSteps - 1);
+    for (int i = 0; numSteps > 0 && i < outline.GetNumChildren(_shape); ++i) {
+        int const child = add(outline.GetChild(_shape, i), numSteps - 1);
         Cell &cell = _cells[number];
         cell.children.push_back(child);
         std::vector<int> const &samples = _cells[std::size_t(child)].samples;
@@ -57,18 +57,6 @@ int CellGrid::add(Shape const &shape, int numSteps) {
     std::sort(samples.begin(), samples.end());
     samples.erase(std::unique(samples.begin(), samples.end()), samples.end());
     return int(number);
-}
-
-CellGrid::Shape CellGrid::getChild(Shape const &shape, int child) const {
-    if (!shape.isWhole) {
-        return {false, shape.sector, 0,
-                HalfCell::GetCornersOfChild(shape.corners, std::size_t(child))};
-    }
-    if (child == 0) {
-        return {true, 0, shape.scale / 2, {}};
-    }
-    return {false, child - 1 + _shape.GetFirstSector(), 0,
-            HalfCell::GetCornersAtEdge<Pair>(shape.scale)};
 }
 
 void CellGrid::Sample(CellValues const &cell, std::vector<double> &samples) {
@@ -86,10 +74,10 @@ void CellGrid::Sample(BaseType const &type, double const *controlPoints,
         if (plain) {
             _ringValues.Set(plain->GetRings().GetRings(), std::size_t(numPoints), nullptr,
                             _points.data(), 3, 3);
-            _evaluator.Evaluate(*plain, _ringValues, getPlan(false), results, 3);
+            _evaluator.Evaluate(*plain, _ringValues, _planOfBase, results, 3);
         } else {
-            _evaluator.Evaluate(*type, getPlan(type.IsInLattice()), 3, _points.data(), 3, results,
-                                3);
+            _evaluator.Evaluate(*type, type.IsInLattice() ? _plan : _planOfBase, 3, _points.data(),
+                                3, results, 3);
         }
     });
 }
@@ -118,19 +106,6 @@ void CellGrid::sample(double const *points, std::size_t stride, int numPoints,
     for (std::size_t i = 0; i < samples.size(); ++i) {
         samples[i] = origin[i % 3] + size * double(_samples[i]);
     }
-}
-
-CellPlan const &CellGrid::getPlan(bool isInLattice) {
-    std::unique_ptr<CellPlan const> &plan = _plansOfBase[isInLattice ? 1 : 0];
-    if (!plan) {
-        std::vector<LeafPlaces::Place> places;
-        for (std::size_t i = 0; i < _places.GetSize(); ++i) {
-            places.push_back(_places[i]);
-        }
-        plan = std::make_unique<CellPlan const>(_shape, kNumSteps, places, CellPlan::Use::AllPoints,
-                                                isInLattice);
-    }
-    return *plan;
 }
 
 void CellGrid::measure(std::vector<double> const &samples, Cell const &cell,

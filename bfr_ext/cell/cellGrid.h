@@ -7,7 +7,6 @@
 #include "patchEvaluator.h"
 #include "refinedCells.h"
 
-#include <memory>
 #include <vector>
 
 namespace OpenSubdivHex::BfrExt::internal {
@@ -56,27 +55,18 @@ private:
         std::vector<int> children; // in the grid
         double factor;             // of the range of heights
     };
-    struct Shape {
-        bool isWhole;
-        int sector;
-        double scale;                // of whole cells
-        std::array<Pair, 4> corners; // of half cells
-    };
-
     template <typename FUNCTION>
     void sample(double const *points, std::size_t stride, int numPoints,
                 std::vector<double> &samples, FUNCTION const &evaluate);
-    int add(Shape const &shape, int numSteps);
-    Shape getChild(Shape const &shape, int child) const;
-    CellPlan const &getPlan(bool isInLattice);
+    int add(CellOutline<Pair> const &outline, int numSteps);
     void measure(std::vector<double> const &samples, Cell const &cell,
                  CellMeasures &measures) const;
 
     FaceShape const _shape;
     LeafPlaces const _places;
     std::vector<Cell> _cells;
-    CellPlan const _plan;
-    std::unique_ptr<CellPlan const> _plansOfBase[2];
+    CellPlan const _plan;       // of cells, and of base faces in lattices
+    CellPlan const _planOfBase; // of other base faces
     PatchEvaluator<float> _evaluator;
     RingValues<float> _ringValues;
     std::vector<float> _points;

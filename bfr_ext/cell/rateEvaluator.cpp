@@ -104,8 +104,7 @@ void RateEvaluator<REAL>::Evaluate(CellType const &type, REAL const *points,
                                    std::ptrdiff_t stride) {
     Source const source = {{type, nullptr, points, stride, nullptr}, 0};
     forEachEdge([&](int edge, int rate, int first) {
-        evaluateEdge(edge, rate, first);
-        evaluateVertex(edge, first);
+        evaluateBorder(edge, rate, first);
         if (_results[1]) {
             evaluateDerivativesOnEdge(source, edge, rate, first);
         }
@@ -128,9 +127,7 @@ void RateEvaluator<REAL>::Evaluate(PlainFaceType const &type) {
                 child};
     };
     forEachEdge([&](int edge, int rate, int first) {
-        evaluateEdge(edge, rate, first);
-        // The edge has made the points of all rings, and the vertex finds those of its own among them.
-        evaluateVertex(edge, first);
+        evaluateBorder(edge, rate, first);
         Source const source = getSource(std::size_t(edge) + 1);
         evaluateInside(source);
         if (_results[1]) {
@@ -152,16 +149,14 @@ void RateEvaluator<REAL>::forEachEdge(FUNCTION const &function) const {
     }
 }
 
+// Writes the points of an edge, and of the vertex where it begins.
 template <typename REAL>
-void RateEvaluator<REAL>::evaluateVertex(int edge, int first) const {
-    _border.EvaluateVertex(std::size_t(edge), getResult(0, first));
-}
-
-template <typename REAL>
-void RateEvaluator<REAL>::evaluateEdge(int edge, int rate, int first) const {
+void RateEvaluator<REAL>::evaluateBorder(int edge, int rate, int first) const {
     if (rate > 1) {
         _border.EvaluateRate(std::size_t(edge), rate, getResult(0, first + 1), _resultStride);
     }
+    // The edge has made the points of all rings, and the vertex finds those of its own among them.
+    _border.EvaluateVertex(std::size_t(edge), getResult(0, first));
 }
 
 template <typename REAL>

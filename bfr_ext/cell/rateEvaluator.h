@@ -71,8 +71,7 @@ private:
                                FaceShape shape, bool hasDerivatives);
     template <typename FUNCTION>
     void forEachEdge(FUNCTION const &function) const;
-    void evaluateVertex(int edge, int first) const;
-    void evaluateEdge(int edge, int rate, int first) const;
+    void evaluateBorder(int edge, int rate, int first) const;
     // The kind of face, with its parameterization.
     int getFaceKey() const;
     FaceShape getShape(Source const &source) const;

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#ifndef OPENSUBDIVHEX_BFR_EXT_STREAM_PATCH_PLANS_H
-#define OPENSUBDIVHEX_BFR_EXT_STREAM_PATCH_PLANS_H
+#ifndef OPENSUBDIVHEX_BFR_EXT_CELL_PATCH_PLANS_H
+#define OPENSUBDIVHEX_BFR_EXT_CELL_PATCH_PLANS_H
 
-#include "bfr_ext/cell/cellPlan.h"
-#include "bfr_ext/cell/faceSections.h"
+#include "cellPlan.h"
+#include "faceSections.h"
+
 #include "bfr_ext/levelTessellation.h"
 
 #include <algorithm>
@@ -47,7 +48,8 @@ public:
 
     /// Whether a face with some levels comes in sections.
     bool IsCut(FaceLevels const &levels) const {
-        return isCut(double(GetSizeOfMaking(levels)), FaceSections::CountLeaves(levels));
+        return isCut(double(GetSizeOfMaking(levels)),
+                     FaceSections::CountLeaves(levels.shape, levels.levels.back()));
     }
     /// Overload for a face with a tree.
     bool IsCut(CellTree const &tree) const {
