@@ -154,21 +154,25 @@ bool SurfaceFactory::hasRefinedAgain() const {
     return _level.GetDepth() > 0 && _refiner.GetNumRefinements() != _numRefinements;
 }
 
+bool SurfaceFactory::isFace(Index face) const {
+    return 0 <= face && face < GetNumFaces() && !hasRefinedAgain() && !_faces.IsHole(face);
+}
+
 CallStatus SurfaceFactory::checkIsFace(Index face) const {
+    if (isFace(face)) {
+        return CallStatus();
+    }
     if (hasRefinedAgain()) {
         return FarExt::internal::Failure(
             StatusCode::InvalidArgument,
             "the refiner has refined again since the factory was made");
     }
-    bool const isInRange = 0 <= face && face < GetNumFaces();
-    if (isInRange && !_faces.IsHole(face)) {
-        return CallStatus();
-    }
+    bool const isHole = 0 <= face && face < GetNumFaces();
     std::string const name = "face " + std::to_string(face);
     return CallStatus(StatusCode::InvalidArgument, ComponentType::Face, face,
-                      isInRange ? name + " is a hole, which has no surface"
-                                : name + " is not one of the " + std::to_string(GetNumFaces()) +
-                                      " faces of level " + std::to_string(_level.GetDepth()));
+                      isHole ? name + " is a hole, which has no surface"
+                             : name + " is not one of the " + std::to_string(GetNumFaces()) +
+                                   " faces of level " + std::to_string(_level.GetDepth()));
 }
 
 CallStatus SurfaceFactory::CheckFace(Index face) const {
@@ -290,8 +294,8 @@ struct SurfaceFactory::FaceMaker {
 internal::BaseFace const *SurfaceFactory::makeFace(Types const &types, Index face,
                                                    Interpolation interpolation, int channel,
                                                    FaceMaker &maker, CallStatus &status) const {
-    status = checkIsFace(face);
-    if (!status.IsOk()) {
+    if (!isFace(face)) {
+        status = checkIsFace(face);
         return nullptr;
     }
     FarExt::internal::Hierarchy const &hierarchy = _refiner.GetHierarchy();

@@ -318,6 +318,7 @@ private:
     std::shared_ptr<Types const> getTypes() const;
     int getPatchLevel(internal::BaseType const &type) const;
     bool hasRefinedAgain() const;
+    bool isFace(Index face) const;
     FarExt::CallStatus checkIsFace(Index face) const;
     Index getOwnFace(Index face, int channel) const;
     FarExt::CallStatus checkCrowd(Index face, int channel, Index ownFace) const;

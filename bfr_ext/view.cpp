@@ -115,10 +115,10 @@ public:
     /// \param indices  which points are those of the face; null: all in turn
     void Set(BaseFace const &face, PointArray const &points, Far::Index const *indices) {
         _face = &face;
-        _points.clear();
+        _points.resize(3 * std::size_t(face.numPoints));
         for (int i = 0; i < face.numPoints; ++i) {
             Vector3 const point = points[indices ? indices[i] : i];
-            _points.insert(_points.end(), point.begin(), point.end());
+            std::copy(point.begin(), point.end(), &_points[3 * std::size_t(i)]);
         }
     }
 

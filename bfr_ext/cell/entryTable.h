@@ -15,11 +15,12 @@ namespace OpenSubdivHex::BfrExt::internal {
 ///
 /// Any number of threads may use it; what is there already is found without a lock.
 ///
-/// \tparam ENTRY  has a member hash, a std::size_t
-template <typename ENTRY>
+/// \tparam ENTRY   has a member hash, a std::size_t
+/// \tparam DELETE  what becomes of entries
+template <typename ENTRY, typename DELETE = std::default_delete<ENTRY const>>
 class EntryTable {
 public:
-    using Pointer = std::unique_ptr<ENTRY const>;
+    using Pointer = std::unique_ptr<ENTRY const, DELETE>;
 
     /// Bytes that an entry takes, with its part of the table, without what it has on the heap.
     static constexpr std::size_t kEntrySize = sizeof(ENTRY) + 5 * sizeof(void *);

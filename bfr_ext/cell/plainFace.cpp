@@ -5,7 +5,9 @@
 
 #include <algorithm>
 #include <cstring>
+#include <new>
 #include <numeric>
+#include <type_traits>
 #include <utility>
 
 namespace OpenSubdivHex::BfrExt::internal {
@@ -68,18 +70,31 @@ std::size_t PlainFaceKey::GetHash() const {
 }
 
 PlainFaceType::PlainFaceType(PlainFaceTypes &types, PlainFaceKey const &key, int numVerts,
-                             GrowingPatch const &patch)
-    : hash(key.GetHash()), _types(types), _key(key.GetBytes(), key.GetBytes() + key.GetSize()),
-      _runs(patch.GetRuns()), _numVerts(numVerts),
-      _numOthers(std::accumulate(_runs.begin(), _runs.end(), 0,
-                                 [](int count, Run const &run) { return count + run.numPoints; })),
-      _isInLattice(isInLattice(key, numVerts)) {}
+                             int numRuns, int numOthers)
+    : hash(key.GetHash()), _types(types), _keySize(key.GetSize()), _numVerts(numVerts),
+      _numRuns(numRuns), _numOthers(numOthers), _isInLattice(isInLattice(key, numVerts)) {}
+
+PlainFaceType const *PlainFaceType::Make(PlainFaceTypes &types, PlainFaceKey const &key,
+                                         int numVerts, GrowingPatch const &patch,
+                                         ByteBlocks &blocks) {
+    static_assert(alignof(Run) == 1 && std::is_trivially_copyable_v<Run>);
+    Run runs[GrowingPatch::kMaxVerts];
+    Run const *const end = patch.GetRuns(runs);
+    auto const sizeOfRuns = std::size_t(end - runs) * sizeof(Run);
+    std::byte *const memory = blocks.Take(sizeof(PlainFaceType) + key.GetSize() + sizeOfRuns);
+    std::byte *const bytes = memory + sizeof(PlainFaceType);
+    std::memcpy(bytes, key.GetBytes(), key.GetSize());
+    std::memcpy(bytes + key.GetSize(), runs, sizeOfRuns);
+    int const numOthers =
+        std::accumulate(static_cast<Run const *>(runs), end, 0,
+                        [](int count, Run const &run) { return count + run.numPoints; });
+    return new (memory) PlainFaceType(types, key, numVerts, int(end - runs), numOthers);
+}
 
 PlainFaceType::~PlainFaceType() { delete _rings.load(); }
 
 bool PlainFaceType::HasKey(PlainFaceKey const &key) const {
-    return key.GetSize() == _key.size() &&
-           std::memcmp(key.GetBytes(), _key.data(), _key.size()) == 0;
+    return key.GetSize() == _keySize && std::memcmp(key.GetBytes(), getKey(), _keySize) == 0;
 }
 
 // A vertex has its neighbours in the patch.
@@ -107,8 +122,9 @@ CellType const &PlainFaceType::make() const {
 
 CellPatch PlainFaceType::makeCell(bool hasSignature) const {
     static thread_local GrowingPatch patch;
-    patch.Start(getFaceSize(_key.data()));
-    grow(_key.data(), _numVerts, patch);
+    patch.Start(getFaceSize(getKey()));
+    patch.KeepFaces();
+    grow(getKey(), _numVerts, patch);
     std::vector<int> faceSizes;
     std::vector<Far::Index> faceVerts;
     patch.GetFaces(faceSizes, faceVerts);
@@ -215,12 +231,16 @@ CellType::BorderItem const &PlainFaceType::GetLatticeItem(int const *turns,
 
 PlainFaceType const &PlainFaceTypes::Add(PlainFaceKey const &key, int numVerts,
                                          GrowingPatch const &patch) {
-    auto const [type, isNew] =
-        _entries.Add(std::make_unique<PlainFaceType const>(*this, key, numVerts, patch),
-                     [&](PlainFaceType const &other) { return other.HasKey(key); });
+    decltype(_entries)::Pointer made;
+    {
+        std::lock_guard<std::mutex> const lock(_mutex);
+        made.reset(PlainFaceType::Make(*this, key, numVerts, patch, _blocks));
+    }
+    auto const [type, isNew] = _entries.Add(
+        std::move(made), [&](PlainFaceType const &other) { return other.HasKey(key); });
     if (isNew) {
         ++_numUnmade;
-        _types.GetMemory().Add(decltype(_entries)::kEntrySize + type->GetHeapSize());
+        _types.GetMemory().Add(decltype(_entries)::kEntrySize + type->GetSizeOfBytes());
     }
     return *type;
 }
@@ -316,7 +336,7 @@ bool PlainFaceGatherer::writePoints(PlainFaceType const &type, Index *points) {
         *end++ = point;
     };
     std::for_each_n(_verts, _numVerts, [&](Vertex const &vert) { add(vert.vert); });
-    for (PlainFaceType::Run const &run : type.GetRuns()) {
+    std::for_each(type.GetRuns(), type.GetEndOfRuns(), [&](PlainFaceType::Run const &run) {
         Index place = _verts[run.first.vert].GetPlace(run.first.place);
         for (int corner = 1; corner < run.first.corner; ++corner) {
             place = nexts[place].place;
@@ -326,7 +346,7 @@ bool PlainFaceGatherer::writePoints(PlainFaceType const &type, Index *points) {
             place = next.place;
             add(next.vert);
         }
-    }
+    });
     if (!mayBeSame) {
         return true;
     }

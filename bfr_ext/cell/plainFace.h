@@ -2,6 +2,7 @@
 #ifndef OPENSUBDIVHEX_BFR_EXT_CELL_PLAIN_FACE_H
 #define OPENSUBDIVHEX_BFR_EXT_CELL_PLAIN_FACE_H
 
+#include "byteBlocks.h"
 #include "cellType.h"
 #include "faceWalk.h"
 #include "growingPatch.h"
@@ -10,7 +11,7 @@
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
-#include <vector>
+#include <mutex>
 
 namespace OpenSubdivHex::BfrExt::internal {
 
@@ -49,10 +50,12 @@ class PlainFaceType {
 public:
     using Run = GrowingPatch::Run;
 
+    /// Makes one in blocks, in which its bytes lie behind it.
+    ///
     /// \param numVerts  all of whose faces are in the patch
     /// \param patch     that of the key
-    PlainFaceType(PlainFaceTypes &types, PlainFaceKey const &key, int numVerts,
-                  GrowingPatch const &patch);
+    static PlainFaceType const *Make(PlainFaceTypes &types, PlainFaceKey const &key, int numVerts,
+                                     GrowingPatch const &patch, ByteBlocks &blocks);
     ~PlainFaceType();
     PlainFaceType(PlainFaceType const &) = delete;
     PlainFaceType &operator=(PlainFaceType const &) = delete;
@@ -60,11 +63,13 @@ public:
     std::size_t const hash; ///< of the key
 
     bool HasKey(PlainFaceKey const &key) const;
-    /// What it has on the heap, without what is made on demand.
-    std::size_t GetHeapSize() const { return GetHeapSizes(_key, _runs); }
+    /// Bytes of the key and the points.
+    std::size_t GetSizeOfBytes() const { return _keySize + std::size_t(_numRuns) * sizeof(Run); }
     int GetNumPoints() const { return _numVerts + _numOthers; }
     /// The points behind the vertices whose faces are all there.
-    std::vector<Run> const &GetRuns() const { return _runs; }
+    Run const *GetRuns() const { return reinterpret_cast<Run const *>(getKey() + _keySize); }
+    /// The end of these.
+    Run const *GetEndOfRuns() const { return GetRuns() + _numRuns; }
     /// The type that evaluates the points, made on demand.
     CellType const &Get() const {
         CellType const *const type = _type.load(std::memory_order_acquire);
@@ -82,6 +87,10 @@ public:
     CellType::BorderItem const &GetLatticeItem(int const *turns, std::size_t item) const;
 
 private:
+    PlainFaceType(PlainFaceTypes &types, PlainFaceKey const &key, int numVerts, int numRuns,
+                  int numOthers);
+
+    std::uint8_t const *getKey() const { return reinterpret_cast<std::uint8_t const *>(this + 1); }
     CellType const &make() const;
     FaceRings const &makeRings() const;
     FarExt::internal::CellPatch makeCell(bool hasSignature) const;
@@ -89,9 +98,10 @@ private:
                                          std::size_t item) const;
 
     PlainFaceTypes &_types;
-    std::vector<std::uint8_t> const _key;
-    std::vector<Run> const _runs;
+    // Behind this there are the key, and the runs of other points.
+    std::size_t const _keySize;
     int const _numVerts;
+    int const _numRuns;
     int const _numOthers;
     bool const _isInLattice;
     mutable std::atomic<FaceRings const *> _rings{nullptr};
@@ -114,9 +124,15 @@ public:
 private:
     friend class PlainFaceType;
 
+    struct Destroy {
+        void operator()(PlainFaceType const *type) const { type->~PlainFaceType(); }
+    };
+
     CellTypes &_types;
     RingCells &_ringCells;
-    EntryTable<PlainFaceType> _entries;
+    std::mutex _mutex;
+    ByteBlocks _blocks{1 << 12};
+    EntryTable<PlainFaceType, Destroy> _entries;
     std::atomic<std::size_t> _numUnmade{0};
 };
 
