@@ -44,35 +44,6 @@ private:
     Far::Index _count;
 };
 
-/// \brief The points of some vertices of the mesh, each made by the first face that asked for it.
-///
-/// Plain faces make the same point of a vertex that they share, to the bit.
-template <typename REAL>
-class KnownVertices {
-public:
-    /// The point of a vertex, of \p size numbers; make(point) writes it where it is not known.
-    template <typename MAKE>
-    REAL const *Find(Far::Index vertex, std::size_t size, MAKE const &make) {
-        if (_vertices.empty()) {
-            _vertices.assign(kNumPlaces, Far::INDEX_INVALID);
-            _points.resize(kNumPlaces * size);
-        }
-        std::size_t const place = std::size_t(vertex) % kNumPlaces;
-        REAL *const point = &_points[place * size];
-        if (_vertices[place] != vertex) {
-            make(point);
-            _vertices[place] = vertex;
-        }
-        return point;
-    }
-
-private:
-    static constexpr std::size_t kNumPlaces = 4096;
-
-    std::vector<Far::Index> _vertices;
-    std::vector<REAL> _points;
-};
-
 } // namespace
 
 /// The data of a stream, with all that does not depend on the precision of points.
@@ -537,14 +508,6 @@ public:
     }
 
 private:
-    // Gathers the control points of the surface, without gaps.
-    void gather(Values const &values) {
-        _controlPoints.resize(std::size_t(_surface.GetNumControlPoints()) *
-                              std::size_t(values.desc.size));
-        _surface.GatherControlPoints(values.values, values.desc, _controlPoints.data(),
-                                     values.desc.size);
-    }
-
     bool evaluate(Index face, LevelTessellation const &tessellation, std::size_t i,
                   CallStatus &status) {
         Values const &values = _values[i];
@@ -558,52 +521,34 @@ private:
         if (!status.IsOk()) {
             return false;
         }
-        PointDescriptor const desc(values.desc.size);
-        std::size_t const size = std::size_t(tessellation.GetNumCoords()) * std::size_t(desc.size);
-        bool const hasDerivatives = i == 0 && _stream.options.HasDerivatives();
-        bool const hasVerticesAlone = tessellation.GetNumSections() == 1 &&
-                                      tessellation.GetNumCoords() == tessellation.GetFaceSize();
-        _results[i].resize(size);
-        _resultStarts[i] = _results[i].data();
-        if (i == 0 && hasVerticesAlone && !hasDerivatives && _surface.GetFace().type.GetPlain()) {
-            evaluateVertices(face);
-            return true;
-        }
-        gather(values);
-        if (hasDerivatives) {
+        std::size_t const size =
+            std::size_t(tessellation.GetNumCoords()) * std::size_t(values.desc.size);
+        _results[i].numbers.resize(size);
+        _resultStarts[i] = _results[i].numbers.data();
+        REAL *results[6] = {_results[i].numbers.data()};
+        if (i == 0 && _stream.options.HasDerivatives()) {
             _du.resize(size);
             _dv.resize(size);
+            results[1] = _du.data();
+            results[2] = _dv.data();
         }
-        _surface.Evaluate(tessellation, _controlPoints.data(), desc, _results[i].data(),
-                          hasDerivatives ? _du.data() : nullptr,
-                          hasDerivatives ? _dv.data() : nullptr, desc);
+        internal::FaceEvaluator<REAL>(_surface.GetFace(), values.values, values.desc,
+                                      &_results[i].shared)
+            .Evaluate(tessellation.GetData(), results, PointDescriptor(values.desc.size));
         return true;
     }
 
-    // Of a plain face whose tessellation has no other places.
-    void evaluateVertices(Index face) {
-        PointDescriptor const desc(_values[0].desc.size);
-        auto const pointSize = std::size_t(desc.size);
-        for (int local = 0; local < _surface.GetFaceSize(); ++local) {
-            auto const make = [&](REAL *result) {
-                gather(_values[0]);
-                internal::FaceEvaluator<REAL>(_surface.GetFace(), _controlPoints.data(), desc)
-                    .EvaluateVertex(local, result);
-            };
-            REAL const *const point =
-                _vertices.Find(_stream.factory.GetFaces().GetVertex(face, local), pointSize, make);
-            std::copy_n(point, pointSize, &_results[0][std::size_t(local) * pointSize]);
-        }
-    }
+    struct Results {
+        std::vector<REAL> numbers;
+        internal::SharedRings<REAL> shared;
+    };
 
     StreamData const &_stream;
     TessellationFinder _finder;
     std::vector<Values> const &_values;
     typename Stream::Sink const &_sink;
     Surface<REAL> _surface;
-    KnownVertices<REAL> _vertices;
-    std::vector<REAL> _controlPoints;
-    std::vector<std::vector<REAL>> _results; // points, and values
+    std::vector<Results> _results; // points, and values
     std::vector<REAL const *> _resultStarts;
     std::vector<REAL> _du; // of points
     std::vector<REAL> _dv;

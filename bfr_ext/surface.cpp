@@ -107,19 +107,18 @@ void Surface<REAL>::ComputePatchPoints(REAL patchPoints[],
                                        PointDescriptor const &patchPointDesc) const {
     if (IsValid() && !GetFace().type.IsInLattice()) {
         findPatches().MakePoints(
-            GetFace().type, patchPoints, patchPointDesc.size, patchPointDesc.stride,
+            GetFace().type, _patchLevel, patchPoints, patchPointDesc.size, patchPointDesc.stride,
             patchPoints + std::ptrdiff_t(_numControlPoints) * patchPointDesc.stride);
     }
 }
 
 template <typename REAL>
-template <int NUM_DERIVATIVES>
-void Surface<REAL>::evaluate(REAL const uv[2], REAL const patchPoints[],
+void Surface<REAL>::evaluate(REAL const uv[2], int numDerivatives, REAL const patchPoints[],
                              PointDescriptor const &pointDesc, REAL *const results[6]) const {
     if (IsValid()) {
-        findPatches().template Evaluate<NUM_DERIVATIVES>(
-            _parameterization, GetFaceShape(), {double(uv[0]), double(uv[1])}, patchPoints,
-            pointDesc.size, pointDesc.stride, results);
+        findPatches().Evaluate(_parameterization, GetFaceShape(), _patchLevel,
+                               {double(uv[0]), double(uv[1])}, numDerivatives, patchPoints,
+                               pointDesc.size, pointDesc.stride, results);
     }
 }
 
@@ -127,7 +126,7 @@ template <typename REAL>
 void Surface<REAL>::Evaluate(REAL const uv[2], REAL const patchPoints[],
                              PointDescriptor const &pointDesc, REAL p[]) const {
     REAL *const results[6] = {p};
-    evaluate<0>(uv, patchPoints, pointDesc, results);
+    evaluate(uv, 0, patchPoints, pointDesc, results);
 }
 
 template <typename REAL>
@@ -135,7 +134,7 @@ void Surface<REAL>::Evaluate(REAL const uv[2], REAL const patchPoints[],
                              PointDescriptor const &pointDesc, REAL p[], REAL du[],
                              REAL dv[]) const {
     REAL *const results[6] = {p, du, dv};
-    evaluate<1>(uv, patchPoints, pointDesc, results);
+    evaluate(uv, 1, patchPoints, pointDesc, results);
 }
 
 template <typename REAL>
@@ -143,7 +142,7 @@ void Surface<REAL>::Evaluate(REAL const uv[2], REAL const patchPoints[],
                              PointDescriptor const &pointDesc, REAL p[], REAL du[], REAL dv[],
                              REAL duu[], REAL duv[], REAL dvv[]) const {
     REAL *const results[6] = {p, du, dv, duu, duv, dvv};
-    evaluate<2>(uv, patchPoints, pointDesc, results);
+    evaluate(uv, 2, patchPoints, pointDesc, results);
 }
 
 template <typename REAL>

@@ -294,21 +294,21 @@ private:
 
     Index const *getPoints() const;
     internal::FacePatches<REAL> const &findPatches() const;
-    template <int NUM_DERIVATIVES>
-    void evaluate(REAL const uv[2], REAL const patchPoints[], PointDescriptor const &pointDesc,
-                  REAL *const results[6]) const;
+    void evaluate(REAL const uv[2], int numDerivatives, REAL const patchPoints[],
+                  PointDescriptor const &pointDesc, REAL *const results[6]) const;
     void evaluate(LevelTessellation const &tessellation, REAL const controlPoints[],
                   PointDescriptor const &pointDesc, REAL *const results[6],
                   PointDescriptor const &resultDesc) const;
     int evaluateStencil(REAL const uv[2], int numDerivatives, REAL *const weights[6]) const;
 
-    std::shared_ptr<void const> _owner; // of what the face refers to; null of an invalid surface
-    internal::KeptFace<internal::BaseType> const *_keptFace = nullptr; // the owner's; null: its own
-    std::vector<std::byte> _ownFace;
+    // What evaluation at (u, v) reads comes first.
     mutable internal::SharedPointer<internal::FacePatches<REAL> const> _patches; // found on demand
     int _patchLevel = 0;
     int _numControlPoints = 0; // the face's, without a look at it
     Parameterization _parameterization;
+    std::shared_ptr<void const> _owner; // of what the face refers to; null of an invalid surface
+    internal::KeptFace<internal::BaseType> const *_keptFace = nullptr; // the owner's; null: its own
+    std::vector<std::byte> _ownFace;
 };
 
 extern template class Surface<float>;

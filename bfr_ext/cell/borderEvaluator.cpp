@@ -54,65 +54,64 @@ std::vector<double> makeRatePoints(int rate) {
 } // namespace
 
 template <typename REAL>
-void BorderEvaluator<REAL>::SetFace(CellType const &type, int const *turns, REAL const *points,
-                                    std::ptrdiff_t stride, std::size_t size) {
-    _type = &type;
-    _plain = nullptr;
-    _turns = turns;
-    _numEdges = std::size_t(type.GetNumCorners());
-    _points = points;
-    _stride = stride;
-    _size = size;
-    _paddedSize = StepMatrix::GetPaddedSize(size);
+void BorderEvaluator<REAL>::SetFace(GatheredPoints<REAL> &points) {
+    BaseFace const &face = points.GetFace();
+    _plain = face.type.GetPlain();
+    _type = _plain ? nullptr : &*face.type;
+    _turns = face.GetTurns();
+    _numEdges = std::size_t(face.size);
+    _points = &points;
+    _paddedSize = StepMatrix::GetPaddedSize(points.GetSize());
     _edge = {};
+    _hasValues = false;
     // As long as the type is there, so are its items and their matrices.
-    if (_typeNumber != type.GetNumber()) {
-        _typeNumber = type.GetNumber();
-        _items.assign(2 * _numEdges, {});
+    std::uint64_t const typeNumber = _plain ? 0 : _type->GetNumber();
+    if (_plain || _typeNumber != typeNumber) {
+        _typeNumber = typeNumber;
+        _items.assign(_plain ? 0 : 2 * _numEdges, {});
         _places = {};
         _vertex = {};
     }
 }
 
 template <typename REAL>
-void BorderEvaluator<REAL>::SetFace(PlainFaceType const &type, int const *turns,
-                                    std::size_t numPoints, REAL const *points,
-                                    std::ptrdiff_t stride, std::size_t size) {
-    VertexRings const &rings = type.GetRings().GetRings();
-    _values.Set(rings, numPoints, nullptr, points, stride, size);
-    _type = nullptr;
-    _plain = &type;
-    _turns = turns;
-    _numEdges = rings.GetRings().size();
-    _points = points;
-    _stride = stride;
-    _size = size;
-    _paddedSize = _values.GetPaddedSize();
-    _edge = {};
-    _typeNumber = 0;
-    _places = {};
-    _vertex = {};
+void BorderEvaluator<REAL>::setValues() {
+    _values.Set(_plain->GetRings().GetRings(), _turns + _numEdges,
+                _points->GetSources(std::size_t(_points->GetFace().numPoints), nullptr));
+    _hasValues = true;
 }
 
 template <typename REAL>
 void BorderEvaluator<REAL>::EvaluateVertex(std::size_t vert, REAL *result) {
-    int const turn = _turns[_numEdges + vert];
+    // All plain faces make the same point of a vertex.
+    if (!_plain || !_points->GetShared()) {
+        evaluateVertex(vert, result);
+        return;
+    }
+    REAL const *const point = _points->GetShared()->FindSurfacePoint(
+        _points->GetFace().GetPoints()[vert], _paddedSize,
+        [&](REAL *shared) { evaluateVertex(vert, shared); });
+    std::copy_n(point, GetSize(), result);
+}
+
+template <typename REAL>
+void BorderEvaluator<REAL>::evaluateVertex(std::size_t vert, REAL *result) {
     if (_plain) {
-        FaceRings const &face = _plain->GetRings();
-        if (RingCell const *const cell = face.GetVVertex(int(vert), turn)) {
-            int const numFaces = face.GetRings().GetRings()[vert].GetNumFaces();
-            _values.EvaluateVertex(*cell, int(vert), turn == 0 ? 0 : numFaces - turn, result);
+        RingCell const *const cell =
+            _plain->GetRings().GetVVertex(int(vert), _turns[_numEdges + vert]);
+        if (cell) {
+            GetRingValues().EvaluateVertex(*cell, int(vert), result);
             return;
         }
     }
     CellType::BorderItem const &item = getItem(_numEdges + vert);
     if (item.rings) {
-        _vertexValues.Set(item.rings->rings, item.points.size(), item.points.data(), _points,
-                          _stride, _size);
-        _vertexValues.EvaluateVertex(*item.rings->cell, 0, 0, result);
+        _vertexValues.Set(item.rings->rings, nullptr,
+                          _points->GetSources(item.points.size(), item.points.data()));
+        _vertexValues.EvaluateVertex(*item.rings->cell, 0, result);
     } else {
-        SumUpPlaces(findVertex(*item.type),
-                    {_points, _stride, _size, item.points.data(), result, 0});
+        SumUpPlaces(findVertex(*item.type), {_points->Get(), _points->GetStride(), GetSize(),
+                                             item.points.data(), result, 0});
     }
 }
 
@@ -139,33 +138,39 @@ void BorderEvaluator<REAL>::setEdge(std::size_t edge) {
     if (_plain) {
         FaceRings const &face = _plain->GetRings();
         if (RingCell const *const cell = face.GetLongEdge(int(edge), _isReversed)) {
+            REAL const *const points = GetRingValues().GetPoints();
             _indices.resize(cell->GetColumns().size());
-            face.FindLongEdgeIndices(int(edge), _isReversed, _indices.data());
-            _edge = {&cell->GetType(), cell, _values.GetPoints(), std::ptrdiff_t(_paddedSize),
-                     _indices.data()};
+            face.FindLongEdgeIndices(
+                int(edge), _isReversed,
+                [&](int ring, int ofRing) { return _values.GetPointsOfRing(ring, ofRing); },
+                _indices.data());
+            _edge = {&cell->GetType(), cell, points, std::ptrdiff_t(_paddedSize), _indices.data()};
             return;
         }
     }
     CellType::BorderItem const &item = getItem(edge);
     if (item.type->IsInLattice() || item.type->IsLongEdge()) {
-        _edge = {item.type, nullptr, _points, _stride, item.points.data()};
+        _edge = {item.type, nullptr, _points->Get(), _points->GetStride(), item.points.data()};
     } else if (item.rings) {
-        _edgeValues.Set(item.rings->rings, item.points.size(), item.points.data(), _points, _stride,
-                        _size);
+        // Face 0 of both rings is the first face of the edge: this one, or that across the edge.
+        std::size_t const next = edge + 1 < _numEdges ? edge + 1 : 0;
+        int const *const ofVerts = _turns + _numEdges;
+        int const turns[2] = {_isReversed ? ofVerts[next] + 1 : ofVerts[edge],
+                              _isReversed ? ofVerts[edge] - 1 : ofVerts[next]};
+        _edgeValues.Set(item.rings->rings, turns,
+                        _points->GetSources(item.points.size(), item.points.data()));
         RingCell const &cell = *item.rings->cell;
-        VertexRings const &rings = item.rings->rings;
+        REAL const *const points = _edgeValues.GetPoints();
         _indices.resize(cell.GetColumns().size());
-        RingStep const step = cell.GetLastStep();
         cell.GetPlaces().FindIndices(
-            rings.GetCenter(0, 0, step), [&](int ring) { return rings.GetBlock(ring, 0, step); },
-            _indices.data());
-        _edge = {&cell.GetType(), &cell, _edgeValues.GetPoints(), std::ptrdiff_t(_paddedSize),
-                 _indices.data()};
+            [&](int ring) { return _edgeValues.GetPointsOfRing(ring, 0); }, _indices.data());
+        _edge = {&cell.GetType(), &cell, points, std::ptrdiff_t(_paddedSize), _indices.data()};
     } else {
         CellType::Child const &longEdge = item.type->GetChildren()[0];
+        REAL const *const points = _points->Get();
         _paddedPoints.resize(item.points.size() * _paddedSize);
         for (std::size_t i = 0; i < item.points.size(); ++i) {
-            StepMatrix::Pad(_points + item.points[i] * _stride, _size,
+            StepMatrix::Pad(points + item.points[i] * _points->GetStride(), GetSize(),
                             &_paddedPoints[i * _paddedSize]);
         }
         StepMatrix const &step = item.type->GetStep();

@@ -3,8 +3,8 @@
 #define OPENSUBDIVHEX_BFR_EXT_CELL_BORDER_EVALUATOR_H
 
 #include "cellStencil.h"
+#include "gatheredPoints.h"
 #include "placeKernel.h"
-#include "plainFace.h"
 
 #include <cstdint>
 #include <vector>
@@ -20,16 +20,15 @@ namespace OpenSubdivHex::BfrExt::internal {
 template <typename REAL>
 class BorderEvaluator {
 public:
-    /// \brief Sets the face, whose points are \p size numbers, \p stride numbers apart.
-    ///
-    /// \param turns  those of FindBaseCellTurns()
-    void SetFace(CellType const &type, int const *turns, REAL const *points, std::ptrdiff_t stride,
-                 std::size_t size);
-    /// Overload for a plain face that is not in a lattice, with all its points.
-    void SetFace(PlainFaceType const &type, int const *turns, std::size_t numPoints,
-                 REAL const *points, std::ptrdiff_t stride, std::size_t size);
-    /// The values of the rings of a plain face.
-    RingValues<REAL> &GetRingValues() { return _values; }
+    /// Sets the face by its points, which must live as long as it is set.
+    void SetFace(GatheredPoints<REAL> &points);
+    /// The values of the rings of a plain face that is not in a lattice.
+    RingValues<REAL> &GetRingValues() {
+        if (!_hasValues) {
+            setValues();
+        }
+        return _values;
+    }
 
     /// Writes the point of a vertex.
     void EvaluateVertex(std::size_t vert, REAL *result);
@@ -48,7 +47,7 @@ public:
     static constexpr int kMaxKeptRate = 1024;
 
     /// Numbers of a point.
-    std::size_t GetSize() const { return _size; }
+    std::size_t GetSize() const { return _points->GetSize(); }
 
 private:
     // Sources of the points of an edge.
@@ -70,19 +69,19 @@ private:
     void evaluateInside(std::size_t edge, bool isRate, int level, REAL *results,
                         std::ptrdiff_t stride);
     CellType::BorderItem const &getItem(std::size_t item);
+    void setValues();
+    void evaluateVertex(std::size_t vert, REAL *result);
     void setEdge(std::size_t edge);
     void sumUp(PlaceMatrix<REAL> const &matrix, REAL *results, std::ptrdiff_t resultStride) const {
-        SumUpPlaces(matrix,
-                    {_edge.points, _edge.stride, _size, _edge.indices, results, resultStride});
+        SumUpPlaces(
+            matrix, {_edge.points, _edge.stride, GetSize(), _edge.indices, results, resultStride});
     }
 
     CellType const *_type = nullptr;
     PlainFaceType const *_plain = nullptr;
     int const *_turns = nullptr;
     std::size_t _numEdges = 0;
-    REAL const *_points = nullptr;
-    std::ptrdiff_t _stride = 0;
-    std::size_t _size = 0;
+    GatheredPoints<REAL> *_points = nullptr;
     std::size_t _paddedSize = 0;
     // For the last edge, if any.
     std::size_t _edgeNumber = 0;
@@ -109,6 +108,7 @@ private:
     std::vector<REAL> _paddedPoints;
     std::vector<REAL> _stepPoints;
     std::vector<REAL> _longEdgePoints;
+    bool _hasValues = false;
     RingValues<REAL> _values;     // of a plain face
     RingValues<REAL> _edgeValues; // of its own rings
     RingValues<REAL> _vertexValues;

@@ -72,8 +72,8 @@ void CellGrid::Sample(BaseType const &type, double const *controlPoints,
     int const numPoints = plain ? plain->GetNumPoints() : type->GetNumPoints();
     sample(controlPoints, 3, numPoints, samples, [&](float *const *results) {
         if (plain) {
-            _ringValues.Set(plain->GetRings().GetRings(), std::size_t(numPoints), nullptr,
-                            _points.data(), 3, 3);
+            _ringValues.Set(plain->GetRings().GetRings(), nullptr,
+                            {_points.data(), 3, 3, std::size_t(numPoints), nullptr});
             _evaluator.Evaluate(*plain, _ringValues, _planOfBase, results, 3);
         } else {
             _evaluator.Evaluate(*type, type.IsInLattice() ? _plan : _planOfBase, 3, _points.data(),

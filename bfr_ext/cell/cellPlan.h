@@ -96,6 +96,8 @@ public:
 
     /// Whether it is for derivatives.
     bool HasDerivatives() const { return _use == Use::Derivatives; }
+    /// Whether no place is in a child of node 0, nor at a corner of it.
+    bool IsEmpty() const { return _nodes[0].corners.empty() && _nodes[0].children.empty(); }
     /// Node 0 is the face, or the cell.
     Node const &operator[](std::size_t node) const { return _nodes[node]; }
     /// \brief The plan of a leaf's places whose leaves are its children, or else have the places at their corners; made

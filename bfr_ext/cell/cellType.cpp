@@ -13,32 +13,12 @@
 namespace OpenSubdivHex::BfrExt::internal {
 
 using namespace FarExt::internal;
+using FarExt::CallStatus;
 using FarExt::Interpolation;
 
 namespace {
 
 using Vector = std::vector<double>;
-
-// Appends a number in as many bytes as it takes, small ones, of either sign, in one.
-void addNumber(int number, std::string &key) {
-    auto rest = (std::uint32_t(number) << 1) ^ std::uint32_t(number < 0 ? -1 : 0);
-    for (; rest >= 0x80; rest >>= 7) {
-        key.push_back(char(rest | 0x80));
-    }
-    key.push_back(char(rest));
-}
-
-// There are many types: they take no more memory than they have to.
-void trim(CellPatch &cell) {
-    cell.patch.signature = std::vector<int>();
-    cell.patch.sources.shrink_to_fit();
-    cell.patch.faceSizes.shrink_to_fit();
-    cell.patch.faceVerts.shrink_to_fit();
-    cell.patch.otherCorners.shrink_to_fit();
-    cell.patch.edgeSharpness.shrink_to_fit();
-    cell.patch.diagonalSharpness.shrink_to_fit();
-    cell.patch.vertSharpness.shrink_to_fit();
-}
 
 bool isSharp(LimitPatch const &patch) {
     auto const isNone = [](auto const &tags) {
@@ -133,20 +113,21 @@ std::size_t GetCellHeapSize(CellPatch const &cell) {
     return size;
 }
 
-CellType::CellType(CellTypes &types, CellPatch cell, CellRules const &rules)
-    : _types(types), _number(takeNumber()), _cell(std::move(cell)),
-      _numPoints(int(_cell.patch.sources.size())), _isInLattice(isInLattice(_cell.patch)),
-      _isSharp(isSharp(_cell.patch)), _rules(rules), _borderItems(types.GetMemory()),
-      _patterns(types.GetMemory()) {}
+CellType::CellType(CellTypes &types, CellPatch const &cell, std::string packed,
+                   CellRules const &rules)
+    : _types(types), _number(takeNumber()), _packedCell(std::move(packed)), _kind(cell.kind),
+      _numCorners(cell.GetNumCorners()), _numPoints(int(cell.patch.sources.size())),
+      _isInLattice(isInLattice(cell.patch)), _isSharp(isSharp(cell.patch)), _rules(rules),
+      _borderItems(types.GetMemory()), _patterns(types.GetMemory()) {}
 
 std::vector<CellType::Child> const &CellType::GetChildren() const {
     std::call_once(_onceChildren, [&] {
-        CellRefinement refinement =
-            RefineCell(_cell, _rules.sdcOptions, _rules.hexSchemeOptions, _rules.interpolation);
+        CellRefinement refinement = RefineCell(MakeCell(), _rules.sdcOptions,
+                                               _rules.hexSchemeOptions, _rules.interpolation);
         std::vector<Child> children;
         children.reserve(refinement.children.size());
         for (std::size_t i = 0; i < refinement.children.size(); ++i) {
-            children.push_back({&_types.Find(std::move(refinement.children[i]), _rules),
+            children.push_back({&_types.Find(refinement.children[i], _rules),
                                 ChildStep(_step, refinement.rows[i])});
         }
         if (!children.empty()) {
@@ -167,33 +148,32 @@ bool CellType::IsRegular() const {
 std::vector<Vector> const &CellType::GetCornerPoints() const {
     std::call_once(_oncePoints, [&] {
         std::vector<Vector> points;
-        std::vector<LimitMask::Tangents> tangents;
         if (_rules.interpolation == Interpolation::Varying) {
             // Vertices stay.
-            for (Far::Index const vert : _cell.corners) {
+            for (Far::Index const vert : MakeCell().corners) {
                 points.emplace_back(std::size_t(GetNumPoints()));
                 points.back()[std::size_t(vert)] = 1;
             }
         } else {
-            for (CornerLimit &limit : _types.FindLimits(_cell, _rules)) {
+            for (CornerLimit &limit : _types.FindLimits(MakeCell(), _rules)) {
                 points.push_back(std::move(limit.weights));
-                if (IsWhole() || _cell.kind == CellKind::Half) {
-                    tangents.push_back(std::move(limit.tangents));
-                }
             }
         }
         _points = std::move(points);
-        _tangents = std::move(tangents);
-        std::size_t size = internal::GetHeapSize(_points);
-        for (LimitMask::Tangents const &ofCorner : _tangents) {
-            size += sizeof(ofCorner) + GetHeapSizes(ofCorner.du, ofCorner.dv);
-        }
-        GetMemory().Add(size);
-        if (IsVertex()) {
-            _cell.patch = {};
-        }
+        GetMemory().Add(internal::GetHeapSize(_points));
     });
     return _points;
+}
+
+// Those at a corner; none of edges and vertices, of data that have kinks, and where there is no limit.
+std::optional<LimitMask::Tangents> CellType::findTangents(int corner) const {
+    if (_rules.interpolation == Interpolation::Varying || (!IsWhole() && _kind != CellKind::Half)) {
+        return {};
+    }
+    CellPatch cell = MakeCell();
+    cell.corners = {cell.corners[std::size_t(corner)]};
+    std::vector<CornerLimit> limits = _types.FindLimits(cell, _rules);
+    return limits.empty() ? std::nullopt : std::optional(std::move(limits[0].tangents));
 }
 
 // The derivatives at a corner, from the edges there of the cell that has it \p numSteps steps on.
@@ -245,19 +225,18 @@ CellType::Derivatives CellType::findEarlierDerivatives(int corner) const {
     constexpr double kLeastRate = 1e-4; // of two steps; less is what convergence leaves
     Derivatives derivatives;
     Vector(&result)[2] = derivatives.rows;
-    GetCornerPoints();
-    if (!_tangents.empty()) {
+    std::optional<LimitMask::Tangents> const tangents = findTangents(corner);
+    if (tangents) {
         findDifferences(corner, kSteps - 2, result);
     }
     Projection last;
     Projection before;
-    if (_tangents.empty() || !last.Find(result, _tangents[std::size_t(corner)])) {
+    if (!tangents || !last.Find(result, *tangents)) {
         findDifferences(corner, kStepsAlone, result);
         return derivatives;
     }
-    LimitMask::Tangents const &tangents = _tangents[std::size_t(corner)];
     findDifferences(corner, kSteps - 4, result);
-    before.Find(result, tangents);
+    before.Find(result, *tangents);
     Pair scales;
     for (std::size_t column = 0; column < 2; ++column) {
         double const rate = last.GetLength(column) / before.GetLength(column);
@@ -266,8 +245,8 @@ CellType::Derivatives CellType::findEarlierDerivatives(int corner) const {
     }
     for (std::size_t k = 0; k < 2; ++k) {
         for (std::size_t i = 0; i < result[k].size(); ++i) {
-            result[k][i] = scales[0] * last.factors[k][0] * tangents.du[i] +
-                           scales[1] * last.factors[k][1] * tangents.dv[i];
+            result[k][i] = scales[0] * last.factors[k][0] * tangents->du[i] +
+                           scales[1] * last.factors[k][1] * tangents->dv[i];
         }
     }
     return derivatives;
@@ -325,13 +304,13 @@ CellType::BorderItem const &CellType::GetBorderItem(int const *turns, std::size_
     };
     return get(item, [&] {
         // The others are asked for, too.
-        std::vector<CellPatch> patches = GatherBorder(_cell, turns, _rules.sdcOptions);
+        std::vector<CellPatch> patches = GatherBorder(MakeCell(), turns, _rules.sdcOptions);
         std::size_t const numEdges = patches.size() / 2;
         std::vector<BorderItem> items;
         for (std::size_t i = 0; i < patches.size(); ++i) {
             std::vector<int> points = patches[i].patch.sources;
             points.shrink_to_fit();
-            CellType const &type = _types.Find(CellPatch(patches[i]), _rules);
+            CellType const &type = _types.Find(patches[i], _rules);
             RingItem const &rings = RingItem::Get(type, patches[i], _types.GetRingCells(_rules));
             items.push_back({&type, std::move(points), i < numEdges && turns[i] == 1,
                              rings.cell ? &rings : nullptr});
@@ -347,10 +326,12 @@ CellType::BorderItem const &CellType::GetBorderItem(int const *turns, std::size_
 
 std::vector<double> CellType::FindPatchPoints(PatchAges const &ages) const {
     std::vector<double> rows;
-    if (!FindCellPatchPoints(_cell, _rules.sdcOptions, _rules.hexSchemeOptions,
-                             _rules.interpolation, ages, rows)
-             .IsOk()) {
-        FaceCells const cells = MakeFaceCells({GetNumCorners(), _cell.kind != CellKind::Whole});
+    CallStatus status;
+    _types.UseMaskFinder(_rules, [&](LimitMaskFinder &finder) {
+        status = FindCellPatchPoints(MakeCell(), finder, _rules.interpolation, ages, rows);
+    });
+    if (!status.IsOk()) {
+        FaceCells const cells = MakeFaceCells({GetNumCorners(), _kind != CellKind::Whole});
         rows.assign(std::size_t(cells.GetNumPatches()) * std::size_t(kNumPatchPoints) *
                         std::size_t(GetNumPoints()),
                     std::numeric_limits<double>::quiet_NaN());
@@ -399,35 +380,27 @@ struct CellTypes::OfRules {
 CellTypes::CellTypes(std::shared_ptr<MemoryCount::Total> memory) : _memory(std::move(memory)) {}
 CellTypes::~CellTypes() = default;
 
-CellTypes::Key CellTypes::getKey(CellRules const &rules) {
-    Key key;
+void CellTypes::addRules(CellRules const &rules, Key &key) {
     for (int const number : {int(rules.sdcOptions.GetVtxBoundaryInterpolation()),
                              int(rules.sdcOptions.GetCreasingMethod()),
                              int(rules.hexSchemeOptions.faceMask), int(rules.interpolation)}) {
-        addNumber(number, key);
+        PackNumber(number, key);
     }
-    return key;
 }
 
-CellType const &CellTypes::Find(CellPatch &&cell, CellRules const &rules) {
-    Key key = getKey(rules);
-    auto const addAll = [&](std::vector<int> const &numbers) {
-        for (int const number : numbers) {
-            addNumber(number, key);
-        }
-    };
-    addAll(cell.locals);
-    addNumber(-1 - int(cell.kind), key);
-    addAll(cell.patch.signature);
+CellType const &CellTypes::Find(CellPatch const &cell, CellRules const &rules) {
+    static thread_local Key key;
+    key.clear();
+    PackCell(cell, key);
+    addRules(rules, key);
     std::size_t const hash = std::hash<Key>()(key);
-    auto const isSame = [&](Entry const &entry) { return entry.key == key; };
+    auto const isSame = [&](Entry const &entry) { return entry.type.GetPackedCell() == key; };
     if (Entry const *const found = _types.Find(hash, isSame)) {
         return found->type;
     }
-    trim(cell);
-    std::size_t const size = decltype(_types)::kEntrySize + key.size() + GetCellHeapSize(cell);
-    auto const [entry, isNew] =
-        _types.Add(std::make_unique<Entry const>(hash, key, *this, std::move(cell), rules), isSame);
+    std::size_t const size = decltype(_types)::kEntrySize + key.size();
+    auto const [entry, isNew] = _types.Add(
+        std::unique_ptr<Entry const>(new Entry{hash, {*this, cell, key, rules}}), isSame);
     if (isNew) {
         ++_numTypes;
         _memory.Add(size);
@@ -437,7 +410,9 @@ CellType const &CellTypes::Find(CellPatch &&cell, CellRules const &rules) {
 
 auto CellTypes::getRules(CellRules const &rules) -> OfRules & {
     std::lock_guard<std::mutex> const lock(_mutex);
-    std::unique_ptr<OfRules> &ofRules = _rules[getKey(rules)];
+    Key key;
+    addRules(rules, key);
+    std::unique_ptr<OfRules> &ofRules = _rules[key];
     if (!ofRules) {
         ofRules = std::make_unique<OfRules>(*this, rules);
     }
@@ -450,7 +425,8 @@ PlainFaceTypes &CellTypes::GetPlainFaces(CellRules const &rules) {
 
 RingCells &CellTypes::GetRingCells(CellRules const &rules) { return getRules(rules).ringCells; }
 
-std::vector<CornerLimit> CellTypes::FindLimits(CellPatch const &cell, CellRules const &rules) {
+void CellTypes::UseMaskFinder(CellRules const &rules,
+                              std::function<void(LimitMaskFinder &)> const &use) {
     // Types keep what they get: a finder need not remember more than a mesh's usual cells.
     constexpr int kMaxUses = 512;
     OfRules &ofRules = getRules(rules);
@@ -465,11 +441,16 @@ std::vector<CornerLimit> CellTypes::FindLimits(CellPatch const &cell, CellRules 
     if (!finder) {
         finder = std::make_unique<OfRules::Finder>(rules);
     }
-    std::vector<CornerLimit> limits = FindCornerLimits(cell, finder->masks);
+    use(finder->masks);
     if (++finder->numUses < kMaxUses) {
         std::lock_guard<std::mutex> const lock(_mutex);
         ofRules.finders.push_back(std::move(finder));
     }
+}
+
+std::vector<CornerLimit> CellTypes::FindLimits(CellPatch const &cell, CellRules const &rules) {
+    std::vector<CornerLimit> limits;
+    UseMaskFinder(rules, [&](LimitMaskFinder &finder) { limits = FindCornerLimits(cell, finder); });
     return limits;
 }
 

@@ -3,6 +3,7 @@
 #define OPENSUBDIVHEX_BFR_EXT_CELL_CELL_TYPE_H
 
 #include "halfCell.h"
+#include "packedCell.h"
 #include "patternTable.h"
 #include "stepMatrix.h"
 
@@ -11,8 +12,10 @@
 
 #include <atomic>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <unordered_map>
 #include <vector>
@@ -61,23 +64,27 @@ public:
         std::vector<double> derivatives[2];
     };
 
-    CellType(CellTypes &types, FarExt::internal::CellPatch cell, CellRules const &rules);
+    /// \param packed  the cell of PackCell(), with anything behind it
+    CellType(CellTypes &types, FarExt::internal::CellPatch const &cell, std::string packed,
+             CellRules const &rules);
 
     /// A number that no other type has, nor has had: addresses come again.
     std::uint64_t GetNumber() const { return _number; }
-    FarExt::internal::CellPatch const &GetCell() const { return _cell; }
+    /// As it is packed.
+    std::string const &GetPackedCell() const { return _packedCell; }
+    /// The cell, whose vertices are the sources of their patch; made at each call.
+    FarExt::internal::CellPatch MakeCell() const { return UnpackCell(_packedCell); }
+    FarExt::internal::CellKind GetKind() const { return _kind; }
     /// Whether it has sectors: it is of a base face, or of the F-face that comes of it.
-    bool IsWhole() const {
-        return _cell.kind == FarExt::internal::CellKind::Whole || IsHalfPolygon();
-    }
-    bool IsHalfPolygon() const { return _cell.kind == FarExt::internal::CellKind::HalfPolygon; }
+    bool IsWhole() const { return _kind == FarExt::internal::CellKind::Whole || IsHalfPolygon(); }
+    bool IsHalfPolygon() const { return _kind == FarExt::internal::CellKind::HalfPolygon; }
     /// The shape of a whole cell; of size 0 of others.
     FaceShape GetShape() const {
         return IsWhole() ? FaceShape(GetNumCorners(), IsHalfPolygon()) : FaceShape();
     }
-    bool IsLongEdge() const { return _cell.kind == FarExt::internal::CellKind::LongEdge; }
-    bool IsVertex() const { return _cell.kind == FarExt::internal::CellKind::Vertex; }
-    int GetNumCorners() const { return _cell.GetNumCorners(); }
+    bool IsLongEdge() const { return _kind == FarExt::internal::CellKind::LongEdge; }
+    bool IsVertex() const { return _kind == FarExt::internal::CellKind::Vertex; }
+    int GetNumCorners() const { return _numCorners; }
     int GetNumPoints() const { return _numPoints; }
 
     /// \brief Whether the patch is a piece of a regular lattice of triangles, quads or hexagons, without
@@ -162,13 +169,16 @@ public:
 private:
     void findDifferences(int corner, int numSteps, std::vector<double> (&result)[2]) const;
     Derivatives findEarlierDerivatives(int corner) const;
+    std::optional<FarExt::internal::LimitMask::Tangents> findTangents(int corner) const;
     template <typename FIND, typename TURN>
     Derivatives const &getDerivatives(PatternOf of, int corner, FIND const &find,
                                       TURN const &turn) const;
 
     CellTypes &_types;
     std::uint64_t const _number;
-    mutable FarExt::internal::CellPatch _cell; // of vertices, without a patch once it is not needed
+    std::string const _packedCell;
+    FarExt::internal::CellKind const _kind;
+    int const _numCorners;
     int const _numPoints;
     bool const _isInLattice;
     bool const _isSharp;
@@ -178,7 +188,6 @@ private:
     mutable StepMatrix _step;
     mutable std::once_flag _oncePoints;
     mutable std::vector<std::vector<double>> _points;
-    mutable std::vector<FarExt::internal::LimitMask::Tangents> _tangents;
     mutable std::once_flag _onceCorners;
     mutable std::vector<Corner> _corners;
     mutable PatternTable _borderItems;
@@ -196,11 +205,14 @@ public:
     ~CellTypes();
 
     /// The type of a cell, which belongs to these types.
-    CellType const &Find(FarExt::internal::CellPatch &&cell, CellRules const &rules);
+    CellType const &Find(FarExt::internal::CellPatch const &cell, CellRules const &rules);
     /// The types of plain base faces with some rules.
     PlainFaceTypes &GetPlainFaces(CellRules const &rules);
     /// Products of the first step of plain faces with some rules.
     RingCells &GetRingCells(CellRules const &rules);
+    /// Calls use(finder) with a finder of masks that no other thread uses, and which knows masks of other cells.
+    void UseMaskFinder(CellRules const &rules,
+                       std::function<void(FarExt::internal::LimitMaskFinder &)> const &use);
     /// As FindCornerLimits(), with what other cells found.
     std::vector<FarExt::internal::CornerLimit> FindLimits(FarExt::internal::CellPatch const &cell,
                                                           CellRules const &rules);
@@ -210,20 +222,14 @@ public:
     MemoryCount &GetMemory() { return _memory; }
 
 private:
-    // Numbers of one byte mostly.
     using Key = std::string;
     struct Entry {
-        Entry(std::size_t hashOfKey, Key ofCell, CellTypes &types, FarExt::internal::CellPatch cell,
-              CellRules const &rules)
-            : hash(hashOfKey), key(std::move(ofCell)), type(types, std::move(cell), rules) {}
-
         std::size_t const hash;
-        Key const key;
         CellType const type;
     };
     struct OfRules;
 
-    static Key getKey(CellRules const &rules);
+    static void addRules(CellRules const &rules, Key &key);
     OfRules &getRules(CellRules const &rules);
 
     MemoryCount _memory;

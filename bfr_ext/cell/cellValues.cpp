@@ -76,7 +76,16 @@ void CellValues::SetChild(CellValues const &parent, int child) {
     if (parent._plain) {
         FaceRings const &face = parent._plain->GetRings();
         RingCell const &cell = face.GetChild(std::size_t(child));
-        auto const copy = [&](std::vector<int> const &columns, std::vector<double> &points) {
+        auto const copy = [&](RingPlaces const &places, RingStep step,
+                              std::vector<double> &points) {
+            std::vector<int> const &columns = places.GetColumns();
+            _indices.resize(columns.size());
+            face.FindChildIndices(
+                std::size_t(child), places,
+                [&](int ring, int ofRing) {
+                    return face.GetRings().GetPoints(ring, 0, ofRing, step);
+                },
+                _indices.data());
             for (std::size_t i = 0; i < columns.size(); ++i) {
                 double const *const from = &parent._refined[std::size_t(_indices[i]) * _paddedSize];
                 double *const to = &points[std::size_t(columns[i]) * _paddedSize];
@@ -87,15 +96,10 @@ void CellValues::SetChild(CellValues const &parent, int child) {
         };
         _type = &cell.GetType();
         grow(_type->GetNumPoints());
-        _indices.resize(std::size_t(_numPoints));
-        face.FindChildPoints(std::size_t(child), _indices.data());
-        copy(cell.GetPoints().GetColumns(), _points);
+        copy(cell.GetPoints(), RingStep::First, _points);
         if (cell.IsInner()) {
-            std::vector<int> const &columns = cell.GetColumns();
-            _indices.resize(columns.size());
-            face.FindChildIndices(std::size_t(child), _indices.data());
-            _refined.resize(std::max(_refined.size(), columns.size() * _paddedSize));
-            copy(columns, _refined);
+            _refined.resize(std::max(_refined.size(), cell.GetColumns().size() * _paddedSize));
+            copy(cell.GetPlaces(), cell.GetLastStep(), _refined);
             _isRefined = true;
             _isInner = true;
         }

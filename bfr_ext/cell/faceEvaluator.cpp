@@ -12,7 +12,7 @@ namespace OpenSubdivHex::BfrExt::internal {
 
 template <typename REAL>
 void FaceEvaluator<REAL>::Evaluate(TessellationData const &tessellation, REAL *const results[6],
-                                   PointDescriptor const &resultDesc) const {
+                                   PointDescriptor const &resultDesc) {
     if (tessellation.HasCellPlans()) {
         evaluateLeaves(tessellation, results, resultDesc);
     } else {
@@ -28,21 +28,20 @@ void FaceEvaluator<REAL>::Evaluate(TessellationData const &tessellation, REAL *c
 
 template <typename REAL>
 void FaceEvaluator<REAL>::Evaluate(OpenSubdiv::Bfr::Tessellation const &tessellation,
-                                   REAL *const results[3],
-                                   PointDescriptor const &resultDesc) const {
+                                   REAL *const results[3], PointDescriptor const &resultDesc) {
     useBorder([&](BorderEvaluator<REAL> &border) {
         RateEvaluator<REAL> evaluator(tessellation, border, results, resultDesc.stride);
         if (PlainFaceType const *const plain = _face.type.GetPlain()) {
             evaluator.Evaluate(*plain);
         } else {
-            evaluator.Evaluate(*_face.type, _controlPoints, _pointDesc.stride);
+            evaluator.Evaluate(*_face.type, _points.Get(), _points.GetStride());
         }
     });
 }
 
 template <typename REAL>
 void FaceEvaluator<REAL>::evaluateSecond(TessellationData const &tessellation, REAL *const *results,
-                                         PointDescriptor const &resultDesc) const {
+                                         PointDescriptor const &resultDesc) {
     CellStencil stencil(*_face.type);
     std::ptrdiff_t result = 0;
     for (TessellationData::SectorCoords const &place : tessellation.places) {
@@ -62,7 +61,7 @@ template <typename REAL>
 void FaceEvaluator<REAL>::turnDerivatives(TessellationData const &tessellation,
                                           REAL *const *results,
                                           PointDescriptor const &resultDesc) const {
-    auto const size = std::size_t(_pointDesc.size);
+    auto const size = std::size_t(_size);
     std::ptrdiff_t result = 0;
     for (BfrPlace const &place : tessellation.GetBfrPlaces()) {
         auto const at = [&](std::size_t kind) { return results[kind] + result; };
@@ -80,28 +79,16 @@ void FaceEvaluator<REAL>::turnDerivatives(TessellationData const &tessellation,
 // Calls function(evaluator) for the border of the face.
 template <typename REAL>
 template <typename FUNCTION>
-void FaceEvaluator<REAL>::useBorder(FUNCTION const &function) const {
+void FaceEvaluator<REAL>::useBorder(FUNCTION const &function) {
     // Its memory is kept for the next face, as below.
     static thread_local BorderEvaluator<REAL> border;
-    auto const size = std::size_t(_pointDesc.size);
-    if (PlainFaceType const *const plain = _face.type.GetPlain()) {
-        border.SetFace(*plain, _face.GetTurns(), std::size_t(_face.numPoints), _controlPoints,
-                       _pointDesc.stride, size);
-    } else {
-        border.SetFace(*_face.type, _face.GetTurns(), _controlPoints, _pointDesc.stride, size);
-    }
+    border.SetFace(_points);
     function(border);
 }
 
 template <typename REAL>
-void FaceEvaluator<REAL>::EvaluateVertex(int vert, REAL *result) const {
-    useBorder(
-        [&](BorderEvaluator<REAL> &border) { border.EvaluateVertex(std::size_t(vert), result); });
-}
-
-template <typename REAL>
 void FaceEvaluator<REAL>::evaluateLeaves(TessellationData const &tessellation, REAL *const *results,
-                                         PointDescriptor const &resultDesc) const {
+                                         PointDescriptor const &resultDesc) {
     // Its memory is kept for the next face.
     static thread_local PatchEvaluator<REAL> evaluator;
     PlainFaceType const *const plain = _face.type.GetPlain();
@@ -110,20 +97,22 @@ void FaceEvaluator<REAL>::evaluateLeaves(TessellationData const &tessellation, R
     CellPlan const *const ofDerivatives =
         results[1] ? &tessellation.GetCellPlan(isInLattice, true) : nullptr;
     if (!plain) {
-        evaluator.Evaluate(*_face.type, plan, _pointDesc.size, _controlPoints, _pointDesc.stride,
-                           results, resultDesc.stride);
+        REAL const *const points = _points.Get();
+        evaluator.Evaluate(*_face.type, plan, _size, points, _points.GetStride(), results,
+                           resultDesc.stride);
         if (ofDerivatives) {
-            evaluator.Evaluate(*_face.type, *ofDerivatives, _pointDesc.size, _controlPoints,
-                               _pointDesc.stride, results + 1, resultDesc.stride);
+            evaluator.Evaluate(*_face.type, *ofDerivatives, _size, points, _points.GetStride(),
+                               results + 1, resultDesc.stride);
         }
     }
     useBorder([&](BorderEvaluator<REAL> &border) {
-        if (plain) {
-            RingValues<REAL> &values = border.GetRingValues();
-            evaluator.Evaluate(*plain, values, plan, results, resultDesc.stride);
-            if (ofDerivatives) {
-                evaluator.Evaluate(*plain, values, *ofDerivatives, results + 1, resultDesc.stride);
-            }
+        // Where there are no places, no ring is needed.
+        if (plain && !plan.IsEmpty()) {
+            evaluator.Evaluate(*plain, border.GetRingValues(), plan, results, resultDesc.stride);
+        }
+        if (plain && ofDerivatives && !ofDerivatives->IsEmpty()) {
+            evaluator.Evaluate(*plain, border.GetRingValues(), *ofDerivatives, results + 1,
+                               resultDesc.stride);
         }
         evaluateBorder(tessellation, border, results[0], resultDesc);
     });
@@ -132,12 +121,13 @@ void FaceEvaluator<REAL>::evaluateLeaves(TessellationData const &tessellation, R
 // The control points are refined along the tree, as far as cells have corners that are asked for.
 template <typename REAL>
 void FaceEvaluator<REAL>::evaluateTree(TessellationData const &tessellation, REAL *const *results,
-                                       PointDescriptor const &resultDesc) const {
-    auto const length = std::size_t(_pointDesc.size);
+                                       PointDescriptor const &resultDesc) {
+    auto const length = std::size_t(_size);
     std::vector<double> control;
+    REAL const *const points = _points.Get();
     for (int i = 0; i < _face.numPoints; ++i) {
-        REAL const *const point = _controlPoints + std::ptrdiff_t(i) * _pointDesc.stride;
-        control.insert(control.end(), point, point + _pointDesc.size);
+        REAL const *const p = points + std::ptrdiff_t(i) * _points.GetStride();
+        control.insert(control.end(), p, p + _size);
     }
     CellTree const &tree = tessellation.tree->cells;
     std::vector<double> point(2 * length);
@@ -189,9 +179,9 @@ void FaceEvaluator<REAL>::evaluateTree(TessellationData const &tessellation, REA
         }
     };
     if (PlainFaceType const *const plain = _face.type.GetPlain()) {
-        cells.SetBase(*plain, control.data(), _pointDesc.size);
+        cells.SetBase(*plain, control.data(), _size);
     } else {
-        cells.SetBase(*_face.type, control.data(), _pointDesc.size);
+        cells.SetBase(*_face.type, control.data(), _size);
     }
     visit(visit, 0, RefinedCells::kBase);
     // Derivatives where the tree has not the cell that they are from.

@@ -2,7 +2,6 @@
 #ifndef OPENSUBDIVHEX_BFR_EXT_CELL_FACE_EVALUATOR_H
 #define OPENSUBDIVHEX_BFR_EXT_CELL_FACE_EVALUATOR_H
 
-#include "baseType.h"
 #include "borderEvaluator.h"
 #include "tessellationData.h"
 
@@ -33,47 +32,49 @@ class FaceEvaluator {
 public:
     using PointDescriptor = typename Surface<REAL>::PointDescriptor;
 
-    /// \param face           must live as long, and so must its control points
-    /// \param controlPoints  from one to the next by the stride of \p pointDesc
-    FaceEvaluator(BaseFace const &face, REAL const *controlPoints, PointDescriptor const &pointDesc)
-        : _face(face), _controlPoints(controlPoints), _pointDesc(pointDesc) {}
+    /// \param face       must live as long, and so must the points
+    /// \param points     the control points or, with \p shared, the points of the mesh
+    /// \param shared     the rings that faces of the mesh share, or null
+    FaceEvaluator(BaseFace const &face, REAL const *points, PointDescriptor const &pointDesc,
+                  SharedRings<REAL> *shared = nullptr)
+        : _face(face), _size(pointDesc.size),
+          _points(face, points, pointDesc.stride, std::size_t(pointDesc.size), shared) {}
 
     /// \brief Evaluates a tessellation of a face of this size.
     ///
     /// \param results  the points; by u, by v; by u twice, by u and v, by v twice; null from some kind on
     void Evaluate(TessellationData const &tessellation, REAL *const results[6],
-                  PointDescriptor const &resultDesc) const;
-    /// Writes the point of a vertex, as it is in all tessellations.
-    void EvaluateVertex(int vert, REAL *result) const;
+                  PointDescriptor const &resultDesc);
     /// \brief Evaluates a tessellation of Bfr of a face of this size.
     ///
     /// \param results  the points; by u, by v; both null where only points are wanted
     void Evaluate(OpenSubdiv::Bfr::Tessellation const &tessellation, REAL *const results[3],
-                  PointDescriptor const &resultDesc) const;
+                  PointDescriptor const &resultDesc);
 
 private:
     void evaluateLeaves(TessellationData const &tessellation, REAL *const *results,
-                        PointDescriptor const &resultDesc) const;
+                        PointDescriptor const &resultDesc);
     void evaluateTree(TessellationData const &tessellation, REAL *const *results,
-                      PointDescriptor const &resultDesc) const;
+                      PointDescriptor const &resultDesc);
     void evaluateSecond(TessellationData const &tessellation, REAL *const *results,
-                        PointDescriptor const &resultDesc) const;
+                        PointDescriptor const &resultDesc);
     void turnDerivatives(TessellationData const &tessellation, REAL *const *results,
                          PointDescriptor const &resultDesc) const;
     template <typename FUNCTION>
-    void useBorder(FUNCTION const &function) const;
+    void useBorder(FUNCTION const &function);
     void evaluateBorder(TessellationData const &tessellation, BorderEvaluator<REAL> &evaluator,
                         REAL *p, PointDescriptor const &resultDesc) const;
     void evaluateSectionBorder(TessellationData const &tessellation,
                                BorderEvaluator<REAL> &evaluator, REAL *p,
                                PointDescriptor const &resultDesc) const;
-    void sumUp(std::vector<double> const &weights, REAL *result) const {
-        SumUp(weights.data(), _face.numPoints, _controlPoints, nullptr, _pointDesc, result);
+    void sumUp(std::vector<double> const &weights, REAL *result) {
+        SumUp(weights.data(), _face.numPoints, _points.Get(), nullptr,
+              PointDescriptor(_size, int(_points.GetStride())), result);
     }
 
     BaseFace const &_face;
-    REAL const *const _controlPoints;
-    PointDescriptor const _pointDesc;
+    int const _size; // of a point
+    GatheredPoints<REAL> _points;
 };
 
 } // namespace OpenSubdivHex::BfrExt::internal

@@ -137,7 +137,6 @@ public:
         int const *columns = _columns.data();
         for (PatchBlock<REAL> &block : _blocks) {
             block.columns = columns;
-            block.lastColumn = *std::max_element(columns, columns + block.numColumns);
             columns += block.numColumns;
         }
         if (order) {
@@ -224,14 +223,13 @@ public:
 
     void MakeOfRings(PlainFaceType const &type, int level, REAL const *control) {
         FaceRings const &face = type.GetRings();
-        _rings.Set(face.GetRings(), std::size_t(type.GetNumPoints()), nullptr, control, _stride,
-                   _size);
+        _rings.Set(face.GetRings(), nullptr,
+                   {control, _stride, _size, std::size_t(type.GetNumPoints()), nullptr});
         REAL const *const ofRings = _rings.GetPoints();
         for (std::size_t i = 0; i <= face.GetRings().GetRings().size(); ++i) {
             RingCell const &child = face.GetChild(i);
             std::vector<int> const &sources = getPatches<REAL>(child, level).GetSources();
-            _indices.resize(child.GetColumns().size());
-            face.FindChildIndices(i, _indices.data());
+            _rings.FindChildIndices(face, i, _indices);
             if (child.IsInner()) {
                 // What the step makes is there.
                 for (int const source : sources) {
@@ -557,39 +555,36 @@ struct ByUv {
 };
 
 // Adds where the place is in its patch, whose cell has coordinates that are a linear map from those in the sector.
-template <int NUM_DERIVATIVES>
+template <bool HAS_SECOND>
 OPENSUBDIVHEX_INLINE void addPlace(Quadrilateral const &in, Linear const &linear,
                                    BfrPlace const &ofFace, bool hasSubFaces, PatchPlace &place) {
     // Gregory patches have poles beyond their corners.
     place.s = std::min(std::max(in.s, 0.0), 1.0);
     place.t = std::min(std::max(in.t, 0.0), 1.0);
-    if constexpr (NUM_DERIVATIVES > 0) {
-        ByUv const cell(linear, ofFace, hasSubFaces);
-        auto const toSt = [&](double first, double second) {
-            return Pair{in.byCoords[0][0] * first + in.byCoords[0][1] * second,
-                        in.byCoords[1][0] * first + in.byCoords[1][1] * second};
-        };
-        for (std::size_t k = 0; k < 2; ++k) {
-            Pair const byUv = toSt(cell.first[0][k], cell.first[1][k]);
-            place.first[0][k] = byUv[0];
-            place.first[1][k] = byUv[1];
+    ByUv const cell(linear, ofFace, hasSubFaces);
+    auto const toSt = [&](double first, double second) {
+        return Pair{in.byCoords[0][0] * first + in.byCoords[0][1] * second,
+                    in.byCoords[1][0] * first + in.byCoords[1][1] * second};
+    };
+    for (std::size_t k = 0; k < 2; ++k) {
+        Pair const byUv = toSt(cell.first[0][k], cell.first[1][k]);
+        place.first[0][k] = byUv[0];
+        place.first[1][k] = byUv[1];
+    }
+    if constexpr (HAS_SECOND) {
+        Pair const bend = toSt(in.mixed[0], in.mixed[1]);
+        auto const &[s, t] = place.first;
+        double const products[3] = {2 * s[0] * t[0], s[0] * t[1] + s[1] * t[0], 2 * s[1] * t[1]};
+        for (std::size_t i = 0; i < 3; ++i) {
+            place.second[i] = {-bend[0] * products[i], -bend[1] * products[i]};
         }
-        if constexpr (NUM_DERIVATIVES > 1) {
-            Pair const bend = toSt(in.mixed[0], in.mixed[1]);
-            auto const &[s, t] = place.first;
-            double const products[3] = {2 * s[0] * t[0], s[0] * t[1] + s[1] * t[0],
-                                        2 * s[1] * t[1]};
-            for (std::size_t i = 0; i < 3; ++i) {
-                place.second[i] = {-bend[0] * products[i], -bend[1] * products[i]};
-            }
-            Pair const mixed = toSt(cell.mixed[0], cell.mixed[1]);
-            place.second[1] = {place.second[1][0] + mixed[0], place.second[1][1] + mixed[1]};
-        }
+        Pair const mixed = toSt(cell.mixed[0], cell.mixed[1]);
+        place.second[1] = {place.second[1][0] + mixed[0], place.second[1][1] + mixed[1]};
     }
 }
 
 // In the whole cell of a level.
-template <int NUM_DERIVATIVES>
+template <bool HAS_SECOND>
 PatchPlace findInMiddle(BfrPlace const &ofFace, FaceShape shape, int level) {
     double const scale = 1 << level;
     auto const [a, b] = ofFace.point.coords;
@@ -601,43 +596,42 @@ PatchPlace findInMiddle(BfrPlace const &ofFace, FaceShape shape, int level) {
     for (Pair &row : linear) {
         row = {scale * row[0], scale * row[1]};
     }
-    addPlace<NUM_DERIVATIVES>(in, linear, ofFace, shape.size > 4, place);
+    addPlace<HAS_SECOND>(in, linear, ofFace, shape.size > 4, place);
     return place;
 }
 
-// Calls onPatch(number) as soon as the patch is known.
-template <int NUM_DERIVATIVES, typename FUNCTION>
+// The number of the patch that is a half cell.
+OPENSUBDIVHEX_INLINE int findPatch(SectorCell const &cell, int sector, FaceShape shape) {
+    return MakeFaceCells(shape).GetNumPatches() + shape.GetNumSectors() * cell.numBeforeStep +
+           (sector - shape.GetFirstSector()) * cell.numInStep + cell.numBefore;
+}
+
+// In that cell; null: in the whole cell.
+template <bool HAS_SECOND>
 OPENSUBDIVHEX_INLINE PatchPlace findPatchPlace(BfrPlace const &ofFace, FaceShape shape, int level,
-                                               FUNCTION const &onPatch) {
-    Pair const &coords = ofFace.point.coords;
-    SectorCell const *const cell = SectorCells::Get(level).Find(coords);
+                                               SectorCell const *cell) {
     if (!cell) {
-        return findInMiddle<NUM_DERIVATIVES>(ofFace, shape, level);
+        return findInMiddle<HAS_SECOND>(ofFace, shape, level);
     }
     PatchPlace place;
-    place.patch =
-        MakeFaceCells(shape).GetNumPatches() + shape.GetNumSectors() * cell->numBeforeStep +
-        (ofFace.point.sector - shape.GetFirstSector()) * cell->numInStep + cell->numBefore;
-    onPatch(place.patch);
-    addPlace<NUM_DERIVATIVES>(findInTrapezoid(cell->map.Apply(coords)),
-                              {cell->map.rows[0], cell->map.rows[1]}, ofFace, shape.size > 4,
-                              place);
+    place.patch = findPatch(*cell, ofFace.point.sector, shape);
+    addPlace<HAS_SECOND>(findInTrapezoid(cell->map.Apply(ofFace.point.coords)),
+                         {cell->map.rows[0], cell->map.rows[1]}, ofFace, shape.size > 4, place);
     return place;
 }
 
 } // namespace
 
 PatchPlace FindPatchPlace(BfrPlace const &ofFace, FaceShape shape, int level, int numDerivatives) {
-    auto const onPatch = [](int) {};
-    return numDerivatives == 0   ? findPatchPlace<0>(ofFace, shape, level, onPatch)
-           : numDerivatives == 1 ? findPatchPlace<1>(ofFace, shape, level, onPatch)
-                                 : findPatchPlace<2>(ofFace, shape, level, onPatch);
+    SectorCell const *const cell = SectorCells::Get(level).Find(ofFace.point.coords);
+    return numDerivatives > 1 ? findPatchPlace<true>(ofFace, shape, level, cell)
+                              : findPatchPlace<false>(ofFace, shape, level, cell);
 }
 
 namespace {
 
-// Asks for numbers, so that they are on their way while the weights of a patch are computed, and those of the next place
-// as well: benchmark places of surfaces is 1.5 times as fast.
+// Asks for numbers, so that they are on their way while the place in a patch is computed: benchmark places of surfaces is
+// 1.5 times as fast.  GCC leaves out a call that does nothing else and is not inlined.
 template <typename T>
 OPENSUBDIVHEX_INLINE void prefetch([[maybe_unused]] T const *numbers,
                                    [[maybe_unused]] std::ptrdiff_t count) {
@@ -663,23 +657,24 @@ PatchRows<REAL>::PatchRows(std::vector<std::vector<double>> const &rows) {
                 _columns.push_back(int(column));
             }
         }
-        int const numColumns = int(_columns.size() - firstColumn);
-        auto const paddedSize = std::size_t(PatchBlock<REAL>::GetPaddedSize(numColumns));
+        int const numUsed = int(_columns.size() - firstColumn);
+        int const numColumns = PatchBlock<REAL>::GetPaddedSize(numUsed);
+        _columns.resize(firstColumn + std::size_t(numColumns), _columns[firstColumn]);
         firstWeights.push_back(_weights.size());
-        _weights.resize(_weights.size() + kNumPatchPoints * paddedSize);
-        REAL *to = _weights.data() + firstWeights.back();
-        for (int row = 0; row < kNumPatchPoints; ++row, to += paddedSize) {
-            for (std::size_t i = 0; i < std::size_t(numColumns); ++i) {
-                auto const column = std::size_t(_columns[firstColumn + i]);
+        _weights.resize(_weights.size() + std::size_t(kNumPatchPoints * numColumns));
+        REAL *const to = _weights.data() + firstWeights.back();
+        for (int row = 0; row < kNumPatchPoints; ++row) {
+            for (int i = 0; i < numUsed; ++i) {
+                auto const column = std::size_t(_columns[firstColumn + std::size_t(i)]);
                 double weight = points[PatchRow::kPoints[row]][column];
                 if (row >= PatchRow::kNumBicubic) {
                     int const second = PatchRow::kOfCorners[row - PatchRow::kNumBicubic];
                     weight -= points[PatchRow::kPoints[second]][column];
                 }
-                to[i] = REAL(weight);
+                to[PatchBlock<REAL>::GetPlace(row, i)] = REAL(weight);
             }
         }
-        _blocks.push_back({nullptr, nullptr, numColumns, _columns.back()});
+        _blocks.push_back({nullptr, nullptr, numColumns});
     }
     int const *columns = _columns.data();
     for (std::size_t patch = 0; patch < _blocks.size(); ++patch) {
@@ -698,7 +693,7 @@ FacePatches<REAL> const &FacePatches<REAL>::Get(BaseType const &type, int level)
 }
 
 template <typename REAL>
-FacePatches<REAL>::FacePatches(BaseType const &type, int level) : _level(level) {
+FacePatches<REAL>::FacePatches(BaseType const &type, int level) {
     if (PlainFaceType const *const plain = type.GetPlain()) {
         FaceRings const &face = plain->GetRings();
         for (std::size_t i = 0; i <= face.GetRings().GetRings().size(); ++i) {
@@ -707,8 +702,7 @@ FacePatches<REAL>::FacePatches(BaseType const &type, int level) : _level(level) 
     } else if (type.IsInLattice()) {
         CornerAges const ages(std::size_t(type->GetNumCorners()), -1);
         _ofLattice = PatchRows<REAL>(findRows(*type, 0, ages, level));
-        _parts.push_back({_ofLattice.GetBlocks().data(), 0, type->GetNumPoints()});
-        _numInFirst = int(_ofLattice.GetBlocks().size());
+        add(_ofLattice.GetBlocks(), 0, type->GetNumPoints());
     } else {
         for (CellType::Child const &child : type->GetChildren()) {
             addChild(getPatches<REAL>(*child.type, *child.type, level, nullptr),
@@ -718,77 +712,76 @@ FacePatches<REAL>::FacePatches(BaseType const &type, int level) : _level(level) 
 }
 
 template <typename REAL>
-void FacePatches<REAL>::addChild(ChildPatches<REAL> const &child, int numControlPoints) {
-    if (_parts.empty()) {
-        _numInFirst = int(child.GetBlocks().size());
+void FacePatches<REAL>::add(std::vector<PatchBlock<REAL>> const &blocks, int firstPoint,
+                            int numPoints) {
+    Part const part = {blocks.data(), firstPoint, numPoints};
+    auto const number = std::size_t(_numParts++);
+    if (number == 0) {
+        _numInFirst = int(blocks.size());
     }
+    if (number < _parts.size()) {
+        _parts[number] = part;
+    } else {
+        _otherParts.push_back(part);
+    }
+}
+
+template <typename REAL>
+void FacePatches<REAL>::addChild(ChildPatches<REAL> const &child, int numControlPoints) {
     int const numPoints = int(child.GetSources().size());
-    _parts.push_back({child.GetBlocks().data(), numControlPoints + _numPoints, numPoints});
+    add(child.GetBlocks(), numControlPoints + _numPoints, numPoints);
     _numPoints += numPoints;
 }
 
 template <typename REAL>
-void FacePatches<REAL>::MakePoints(BaseType const &type, REAL const *control, int size,
+void FacePatches<REAL>::MakePoints(BaseType const &type, int level, REAL const *control, int size,
                                    std::ptrdiff_t stride, REAL *points) const {
     static thread_local PointMaker<REAL> maker;
     maker.Init(size, stride, points);
     if (PlainFaceType const *const plain = type.GetPlain()) {
-        maker.MakeOfRings(*plain, _level, control);
+        maker.MakeOfRings(*plain, level, control);
     } else {
-        maker.MakeOfSteps(*type, _level, control);
+        maker.MakeOfSteps(*type, level, control);
     }
 }
 
 // Returns the part that has a patch, and which of the part's patches it is.
 template <typename REAL>
-auto FacePatches<REAL>::findPart(int &patch) const -> Part const & {
+auto FacePatches<REAL>::findPart(int level, int &patch) const -> Part const & {
     if (patch < _numInFirst) {
         return _parts[0];
     }
-    int const levels = 2 * (_level - 1);
+    int const levels = 2 * (level - 1);
     int const behindFirst = patch - _numInFirst;
     patch = behindFirst & ((1 << levels) - 1);
-    return _parts[1 + std::size_t(behindFirst >> levels)];
+    std::size_t const number = 1 + std::size_t(behindFirst >> levels);
+    return number < _parts.size() ? _parts[number] : _otherParts[number - _parts.size()];
 }
 
 template <typename REAL>
-template <int NUM_DERIVATIVES>
 void FacePatches<REAL>::Evaluate(Bfr::Parameterization const &parameterization, FaceShape shape,
-                                 Pair const &uv, REAL const *points, int size,
-                                 std::ptrdiff_t stride, REAL *const *results) const {
-    prefetch(_parts.data(), std::ptrdiff_t(_parts.size()));
-    PatchPlace place = findPatchPlace<NUM_DERIVATIVES>(
-        FindBfrPlace(parameterization, shape, uv, 0), shape, _level, [&](int patch) {
-            Part const &part = findPart(patch);
-            prefetch(part.blocks + patch, 1);
-            prefetch(points + part.firstPoint * stride, part.numPoints * stride);
-        });
-    Part const &part = findPart(place.patch);
-    SumUpPatch(PatchWeights<NUM_DERIVATIVES, REAL>(place), part.blocks[place.patch],
-               points + part.firstPoint * stride, size, stride, results);
+                                 int level, Pair const &uv, int numDerivatives, REAL const *points,
+                                 int size, std::ptrdiff_t stride, REAL *const *results) const {
+    prefetch(&_numInFirst,
+             (sizeof(_numInFirst) + sizeof(_numParts) + sizeof(_parts)) / sizeof(int));
+    BfrPlace const ofFace = FindBfrPlace(parameterization, shape, uv, 0);
+    SectorCell const *const cell = SectorCells::Get(level).Find(ofFace.point.coords);
+    if (cell) {
+        int patch = findPatch(*cell, ofFace.point.sector, shape);
+        Part const &part = findPart(level, patch);
+        prefetch(part.blocks + patch, 1);
+        prefetch(points + part.firstPoint * stride, part.numPoints * stride);
+    }
+    PatchPlace place = numDerivatives > 1 ? findPatchPlace<true>(ofFace, shape, level, cell)
+                                          : findPatchPlace<false>(ofFace, shape, level, cell);
+    Part const &part = findPart(level, place.patch);
+    SumUpPatch({place, numDerivatives, part.blocks[place.patch], points + part.firstPoint * stride,
+                size, stride, results});
 }
 
 template class PatchRows<float>;
 template class FacePatches<float>;
 template class PatchRows<double>;
 template class FacePatches<double>;
-template void FacePatches<float>::Evaluate<0>(Bfr::Parameterization const &, FaceShape,
-                                              Pair const &, float const *, int, std::ptrdiff_t,
-                                              float *const *) const;
-template void FacePatches<double>::Evaluate<0>(Bfr::Parameterization const &, FaceShape,
-                                               Pair const &, double const *, int, std::ptrdiff_t,
-                                               double *const *) const;
-template void FacePatches<float>::Evaluate<1>(Bfr::Parameterization const &, FaceShape,
-                                              Pair const &, float const *, int, std::ptrdiff_t,
-                                              float *const *) const;
-template void FacePatches<double>::Evaluate<1>(Bfr::Parameterization const &, FaceShape,
-                                               Pair const &, double const *, int, std::ptrdiff_t,
-                                               double *const *) const;
-template void FacePatches<float>::Evaluate<2>(Bfr::Parameterization const &, FaceShape,
-                                              Pair const &, float const *, int, std::ptrdiff_t,
-                                              float *const *) const;
-template void FacePatches<double>::Evaluate<2>(Bfr::Parameterization const &, FaceShape,
-                                               Pair const &, double const *, int, std::ptrdiff_t,
-                                               double *const *) const;
 
 } // namespace OpenSubdivHex::BfrExt::internal

@@ -6,6 +6,7 @@
 #include "patchSums.h"
 #include "placeKernel.h"
 
+#include <array>
 #include <cstddef>
 #include <vector>
 
@@ -55,21 +56,23 @@ public:
     /// Those of a type, made on demand.
     static FacePatches const &Get(BaseType const &type, int level);
 
-    std::size_t GetHeapSize() const { return GetHeapSizes(_ofLattice, _parts); }
+    std::size_t GetHeapSize() const { return GetHeapSizes(_ofLattice, _otherParts); }
     /// Points that the patches need besides the control points.
     int GetNumPoints() const { return _numPoints; }
     /// \brief Makes these, outside of lattices, from the control points, of \p size numbers each, from one to the next by
     /// \p stride.
-    void MakePoints(BaseType const &type, REAL const *control, int size, std::ptrdiff_t stride,
-                    REAL *points) const;
-    /// Evaluates the patch of a place: the point, and derivatives by u and v as far as NUM_DERIVATIVES asks:
+    ///
+    /// \param level  that of the patches, here and below
+    void MakePoints(BaseType const &type, int level, REAL const *control, int size,
+                    std::ptrdiff_t stride, REAL *points) const;
+    /// Evaluates the patch of a place: the point, and derivatives by u and v as far as \p numDerivatives asks:
     /// 0, 1 or 2.
     ///
     /// \param points   the control points, and those of MakePoints() behind them
     /// \param results  the point; by u, by v; by u twice, by u and v, by v twice
-    template <int NUM_DERIVATIVES>
-    void Evaluate(Bfr::Parameterization const &parameterization, FaceShape shape, Pair const &uv,
-                  REAL const *points, int size, std::ptrdiff_t stride, REAL *const *results) const;
+    void Evaluate(Bfr::Parameterization const &parameterization, FaceShape shape, int level,
+                  Pair const &uv, int numDerivatives, REAL const *points, int size,
+                  std::ptrdiff_t stride, REAL *const *results) const;
 
 private:
     // The patches of a child, or all, and the points that they are sums of.
@@ -81,13 +84,15 @@ private:
 
     FacePatches(BaseType const &type, int level);
 
+    void add(std::vector<PatchBlock<REAL>> const &blocks, int firstPoint, int numPoints);
     void addChild(ChildPatches<REAL> const &child, int numControlPoints);
-    Part const &findPart(int &patch) const;
+    Part const &findPart(int level, int &patch) const;
 
-    // What evaluation reads comes first.
-    std::vector<Part> _parts;
-    int _level;
+    // What evaluation reads comes first, and lies together: types of faces are mostly not in the cache.
     int _numInFirst = 0; // patches of the first part
+    int _numParts = 0;
+    std::array<Part, 5> _parts; // of a face of up to four sides all
+    std::vector<Part> _otherParts;
     int _numPoints = 0;
     PatchRows<REAL> _ofLattice;
 };

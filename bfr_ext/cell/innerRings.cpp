@@ -19,11 +19,12 @@ using FarExt::internal::VertexRule;
 namespace {
 
 constexpr std::size_t kHexagon = 6;
-// In the block of a face.
-constexpr std::size_t kOuterCenter = 0;
-constexpr std::size_t kCenter = 1;
-constexpr std::size_t kVVertex = 2;
-constexpr std::size_t kFVerticesOfHexagon = 3;
+// In the block of a face, in which the vertex of the ring comes first.
+constexpr std::size_t kVVertex = 1;
+constexpr std::size_t kFVerticesOfHexagon = 2;
+static_assert(kFVerticesOfHexagon + kHexagon == Ring::GetNumOthers(RingStep::Second));
+// In the block of the first step, before the F-vertices.
+constexpr std::size_t kNumOuter = Ring::GetNumOthers(RingStep::First);
 
 } // namespace
 
@@ -166,12 +167,12 @@ void InnerRings::applyFaces(Spoke const &spoke, std::size_t faceSize, REAL const
     std::size_t const stride = PADDED_SIZE == 0 ? paddedSize : PADDED_SIZE;
     REAL const *const weights = spoke.hexagon->Get(REAL());
     REAL const *const mask = spoke.face->Get(REAL());
-    std::array<REAL const *, kHexagon> const hexagon = {inner + kOuterCenter * stride,
+    std::array<REAL const *, kHexagon> const hexagon = {outer,
                                                         firstBefore,
                                                         lastBefore,
-                                                        outer,
-                                                        outer + 2 * stride,
-                                                        outer + stride};
+                                                        outer + stride,
+                                                        outer + (kNumOuter + 1) * stride,
+                                                        outer + kNumOuter * stride};
     for (std::size_t first = 0; first < stride; first += Lanes<REAL>::kCount) {
         std::array<Lanes<REAL>, kHexagon> verts;
         for (std::size_t i = 0; i < kHexagon; ++i) {
@@ -186,7 +187,7 @@ void InnerRings::applyFaces(Spoke const &spoke, std::size_t faceSize, REAL const
             }
             sum.Store(to);
         }
-        REAL const *const ofFace = outer + stride + first;
+        REAL const *const ofFace = outer + kNumOuter * stride + first;
         for (std::size_t corner = 0; corner < faceSize; ++corner, to += stride) {
             Lanes<REAL> sum = Lanes<REAL>::Load(ofFace + corner * stride) * mask[0];
             for (std::size_t i = 1; i < faceSize; ++i) {
@@ -199,34 +200,45 @@ void InnerRings::applyFaces(Spoke const &spoke, std::size_t faceSize, REAL const
 }
 
 template <std::size_t PADDED_SIZE, typename REAL>
-void InnerRings::apply(Ring const &ring, Center const &center, std::size_t paddedSize,
-                       REAL *points) const {
+void InnerRings::Apply(Ring const &ring, std::size_t number, int turn, std::size_t paddedSize,
+                       REAL const *first, REAL *second) const {
     std::size_t const stride = PADDED_SIZE == 0 ? paddedSize : PADDED_SIZE;
-    REAL const *outer = points + ring.GetBlock(0, RingStep::First) * stride;
-    REAL const *before = points + ring.GetBlock(-1, RingStep::First) * stride;
-    REAL *const begin = points + ring.GetBlock(0, RingStep::Second) * stride;
-    REAL *inner = begin;
+    Center const &center = _rings[number];
     int const numFaces = ring.GetNumFaces();
+    int const firstFace = ring.GetFirstFace(turn);
+    REAL const *const beginOfOuter = first + ring.GetBlock(turn, 0, RingStep::First) * stride;
+    REAL *const begin = second + ring.GetBlock(turn, 0, RingStep::Second) * stride;
+    REAL const *outer = beginOfOuter;
+    REAL const *before = first + ring.GetBlock(turn, -1, RingStep::First) * stride;
+    REAL *inner = begin;
     for (int face = 0; face < numFaces; ++face) {
+        if (face == firstFace) {
+            outer = first;
+            inner = second;
+        }
+        REAL const *const firstBefore = before + kNumOuter * stride;
         applyFaces<PADDED_SIZE>(center.spokes[std::size_t(face)],
                                 std::size_t(ring.GetFaceSize(face)), outer,
-                                before + std::size_t(ring.GetFaceSize(face - 1)) * stride,
-                                before + stride, paddedSize, inner);
+                                firstBefore + std::size_t(ring.GetFaceSize(face - 1) - 1) * stride,
+                                firstBefore, paddedSize, inner);
         before = outer;
         outer += ring.GetBlockSize(face, RingStep::First) * stride;
         inner += ring.GetBlockSize(face, RingStep::Second) * stride;
     }
     // The V-vertices of F-vertices need the next block.
     REAL const *const weights = center.fVertex->Get(REAL());
-    outer = points + ring.GetBlock(0, RingStep::First) * stride;
-    REAL *last = begin;
+    outer = beginOfOuter;
     inner = begin;
     for (int face = 0; face < numFaces; ++face) {
-        std::size_t const size = ring.GetBlockSize(face, RingStep::Second) * stride;
-        REAL const *const next = face + 1 < numFaces ? inner + size : begin;
-        for (std::size_t first = 0; first < stride; first += Lanes<REAL>::kCount) {
+        REAL *next = inner + ring.GetBlockSize(face, RingStep::Second) * stride;
+        REAL const *nextOuter = outer + ring.GetBlockSize(face, RingStep::First) * stride;
+        if (face + 1 == (firstFace == 0 ? numFaces : firstFace)) {
+            next = second;
+            nextOuter = first;
+        }
+        for (std::size_t lane = 0; lane < stride; lane += Lanes<REAL>::kCount) {
             auto const load = [&](REAL const *block, std::size_t place) {
-                return Lanes<REAL>::Load(block + place * stride + first);
+                return Lanes<REAL>::Load(block + place * stride + lane);
             };
             Lanes<REAL> const ofFFace = load(inner, kFVerticesOfHexagon + kHexagon);
             Lanes<REAL> const ofEFace = load(inner, kFVerticesOfHexagon + kHexagon - 1);
@@ -234,67 +246,48 @@ void InnerRings::apply(Ring const &ring, Center const &center, std::size_t padde
             Lanes<REAL> const faces = weights[1] == weights[2]
                                           ? (ofFFace + ofEFace + ofNext) * weights[1]
                                           : ofFFace * weights[1] + (ofEFace + ofNext) * weights[2];
-            (load(outer, 1) * weights[0] + faces).Store(inner + kVVertex * stride + first);
+            (load(outer, kNumOuter) * weights[0] + faces).Store(inner + kVVertex * stride + lane);
         }
-        writeCenter<PADDED_SIZE>(ring, center, face, begin, paddedSize, inner);
-        outer += ring.GetBlockSize(face, RingStep::First) * stride;
-        last = inner;
-        inner += size;
+        outer = nextOuter;
+        inner = next;
     }
-    std::copy_n(last, ring.GetBlockSize(-1, RingStep::Second) * stride,
-                points + ring.GetBlock(-1, RingStep::Second) * stride);
-    std::copy_n(begin, ring.GetBlockSize(0, RingStep::Second) * stride, inner);
-    for (int face = 0; face < 2; ++face) {
-        CopyCenter(ring, face, points, paddedSize,
-                   points + ring.GetCenter(face, RingStep::Second) * stride);
-    }
+    writeCenter<PADDED_SIZE>(ring, center, firstFace, first, paddedSize, second);
 }
 
-template <typename REAL>
-void InnerRings::Apply(std::vector<Ring> const &rings, std::size_t ring, std::size_t paddedSize,
-                       REAL *points) const {
-    if (paddedSize == StepMatrix::kPadding) {
-        apply<StepMatrix::kPadding>(rings[ring], _rings[ring], paddedSize, points);
-    } else {
-        apply<0>(rings[ring], _rings[ring], paddedSize, points);
-    }
-}
-
-// Writes the vertex of a ring from a face on, to the block of that.
+// Writes the vertex of a ring to all blocks.
 template <std::size_t PADDED_SIZE, typename REAL>
-void InnerRings::writeCenter(Ring const &ring, Center const &center, int face, REAL const *blocks,
-                             std::size_t paddedSize, REAL *block) {
+void InnerRings::writeCenter(Ring const &ring, Center const &center, int firstFace,
+                             REAL const *outer, std::size_t paddedSize, REAL *blocks) {
     std::size_t const stride = PADDED_SIZE == 0 ? paddedSize : PADDED_SIZE;
     REAL const *const weights = center.vertex->Get(REAL());
     int const numFaces = ring.GetNumFaces();
-    for (std::size_t first = 0; first < stride; first += Lanes<REAL>::kCount) {
-        REAL const *from = block + first;
-        Lanes<REAL> sum = Lanes<REAL>::Load(from + kFVerticesOfHexagon * stride);
-        for (int i = face + 1; i < face + numFaces; ++i) {
-            int const before = i - 1 < numFaces ? i - 1 : i - 1 - numFaces;
-            from = i == numFaces ? blocks + first
-                                 : from + ring.GetBlockSize(before, RingStep::Second) * stride;
-            sum = sum + Lanes<REAL>::Load(from + kFVerticesOfHexagon * stride);
+    auto const forEachBlock = [&](REAL *block, auto const &function) {
+        for (int i = 0, face = firstFace; i < numFaces; ++i) {
+            function(block);
+            block += ring.GetBlockSize(face, RingStep::Second) * stride;
+            face = face + 1 < numFaces ? face + 1 : 0;
         }
-        (Lanes<REAL>::Load(block + kOuterCenter * stride + first) * weights[0] + sum * weights[1])
-            .Store(block + kCenter * stride + first);
+    };
+    for (std::size_t lane = 0; lane < stride; lane += Lanes<REAL>::kCount) {
+        REAL *const begin = blocks + lane;
+        auto sum = Lanes<REAL>::Load(begin + kFVerticesOfHexagon * stride);
+        forEachBlock(begin, [&](REAL const *block) {
+            if (block != begin) {
+                sum = sum + Lanes<REAL>::Load(block + kFVerticesOfHexagon * stride);
+            }
+        });
+        sum = Lanes<REAL>::Load(outer + lane) * weights[0] + sum * weights[1];
+        forEachBlock(begin, [&](REAL *block) { sum.Store(block); });
     }
 }
 
-template <typename REAL>
-void InnerRings::CopyCenter(Ring const &ring, int firstFace, REAL const *points,
-                            std::size_t paddedSize, REAL *result) {
-    REAL const *block = points + ring.GetBlock(0, RingStep::Second) * paddedSize;
-    for (int face = 0; face < firstFace; ++face) {
-        block += ring.GetBlockSize(face, RingStep::Second) * paddedSize;
-    }
-    std::copy_n(block + kCenter * paddedSize, paddedSize, result);
-}
-
-template void InnerRings::Apply(std::vector<Ring> const &, std::size_t, std::size_t, float *) const;
-template void InnerRings::Apply(std::vector<Ring> const &, std::size_t, std::size_t,
-                                double *) const;
-template void InnerRings::CopyCenter(Ring const &, int, float const *, std::size_t, float *);
-template void InnerRings::CopyCenter(Ring const &, int, double const *, std::size_t, double *);
+template void InnerRings::Apply<0>(Ring const &, std::size_t, int, std::size_t, float const *,
+                                   float *) const;
+template void InnerRings::Apply<0>(Ring const &, std::size_t, int, std::size_t, double const *,
+                                   double *) const;
+template void InnerRings::Apply<StepMatrix::kPadding>(Ring const &, std::size_t, int, std::size_t,
+                                                      float const *, float *) const;
+template void InnerRings::Apply<StepMatrix::kPadding>(Ring const &, std::size_t, int, std::size_t,
+                                                      double const *, double *) const;
 
 } // namespace OpenSubdivHex::BfrExt::internal

@@ -51,12 +51,10 @@ private:
 
 /// \brief The second step by its masks, around vertices of the base mesh, from the points of their rings.
 ///
-/// As those of a ring, points are sums that depend on the ring alone.  The vertex of the ring is summed up
-/// from one of its faces on wherever it is needed: what a face adds begins with that face.
+/// As those of a ring, points are sums that depend on the ring alone.
 ///
-/// The block of a face has the vertex of the ring from the face on, as the first step makes it and as the
-/// second one does; the V-vertex of the face's F-vertex there; the F-vertices of the E-face of the edge where
-/// the face begins, from the vertex of the ring on and counter-clockwise; and those of the F-face.
+/// The block of a face has the V-vertex of the vertex; that of the face's F-vertex there; the F-vertices of the E-face
+/// of the edge where the face begins, from the vertex of the ring on and counter-clockwise; and those of the F-face.
 class InnerRings {
 public:
     /// Around a vertex; each of them has a sum of all.
@@ -72,18 +70,15 @@ public:
     ///          plain base faces have none
     bool Init(PatchCorners const &ofPatch, std::vector<int> const &corners, InnerMasks &masks);
 
-    /// \brief Writes the points of a ring behind those of the first step, where the vertices of the ring from all faces on
-    /// are there already.
+    /// \brief Writes the points of a ring from those of the first step.
     ///
-    /// \param rings       of the same corners
+    /// \param number      of the ring
+    /// \param turn        of face 0
     /// \param paddedSize  numbers of a point, a multiple of StepMatrix::kPadding
-    template <typename REAL>
-    void Apply(std::vector<Ring> const &rings, std::size_t ring, std::size_t paddedSize,
-               REAL *points) const;
-    /// Writes the vertex of a ring, from any face on, as it is among \p points, those of all rings.
-    template <typename REAL>
-    static void CopyCenter(Ring const &ring, int firstFace, REAL const *points,
-                           std::size_t paddedSize, REAL *result);
+    /// \tparam PADDED_SIZE  the same if it is known, else 0
+    template <std::size_t PADDED_SIZE, typename REAL>
+    void Apply(Ring const &ring, std::size_t number, int turn, std::size_t paddedSize,
+               REAL const *first, REAL *second) const;
 
 private:
     using Weights = InnerMasks::Weights;
@@ -106,10 +101,8 @@ private:
                            REAL const *lastBefore, REAL const *firstBefore, std::size_t paddedSize,
                            REAL *inner);
     template <std::size_t PADDED_SIZE, typename REAL>
-    static void writeCenter(Ring const &ring, Center const &center, int face, REAL const *blocks,
-                            std::size_t paddedSize, REAL *block);
-    template <std::size_t PADDED_SIZE, typename REAL>
-    void apply(Ring const &ring, Center const &center, std::size_t paddedSize, REAL *points) const;
+    static void writeCenter(Ring const &ring, Center const &center, int firstFace,
+                            REAL const *outer, std::size_t paddedSize, REAL *blocks);
 
     std::vector<Center> _rings;
 };

@@ -9,10 +9,10 @@
 
 namespace OpenSubdivHex::BfrExt::internal {
 
-/// Some numbers of a point, which are computed with at once.
-template <typename REAL>
+/// Some numbers, as those of a point, which are computed with at once.
+template <typename REAL, std::size_t COUNT = 4>
 struct Lanes {
-    static constexpr std::size_t kCount = 4;
+    static constexpr std::size_t kCount = COUNT;
 
     OPENSUBDIVHEX_INLINE static Lanes Load(REAL const *from) {
         Lanes result;
@@ -35,6 +35,13 @@ struct Lanes {
         }
         return result;
     }
+    OPENSUBDIVHEX_INLINE Lanes operator*(Lanes const &other) const {
+        Lanes result;
+        for (std::size_t i = 0; i < kCount; ++i) {
+            result.values[i] = values[i] * other.values[i];
+        }
+        return result;
+    }
     OPENSUBDIVHEX_INLINE Lanes operator*(REAL factor) const {
         Lanes result;
         for (std::size_t i = 0; i < kCount; ++i) {
@@ -42,6 +49,9 @@ struct Lanes {
         }
         return result;
     }
+
+    OPENSUBDIVHEX_INLINE REAL &operator[](std::size_t i) { return values[i]; }
+    OPENSUBDIVHEX_INLINE REAL operator[](std::size_t i) const { return values[i]; }
 
     REAL values[kCount];
 };

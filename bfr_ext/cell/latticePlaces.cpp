@@ -151,15 +151,16 @@ std::vector<Pair> PlacePoints(FarExt::internal::CellPatch const &cell) {
 }
 
 std::vector<Pair> FindLatticePlaces(CellType const &type) {
-    if (type.GetCell().kind != FarExt::internal::CellKind::Half || !type.IsRegular()) {
+    if (type.GetKind() != FarExt::internal::CellKind::Half || !type.IsRegular()) {
         return {};
     }
-    std::vector<int> const &sizes = type.GetCell().patch.faceSizes;
+    FarExt::internal::CellPatch const cell = type.MakeCell();
+    std::vector<int> const &sizes = cell.patch.faceSizes;
     constexpr int kSize = 6;
     if (std::any_of(sizes.begin(), sizes.end(), [](int size) { return size != kSize; })) {
         return {};
     }
-    std::vector<Pair> places = PlacePoints(type.GetCell());
+    std::vector<Pair> places = PlacePoints(cell);
     return keepsPlaces(type, places) ? places : std::vector<Pair>();
 }
 

@@ -183,14 +183,10 @@ void PatchEvaluator<REAL>::Evaluate(PlainFaceType const &type, RingValues<REAL> 
                                     std::ptrdiff_t resultStride) {
     begin(plan, values.GetSize(), results, resultStride);
     FaceRings const &face = type.GetRings();
-    if (plan[0].corners.empty() && plan[0].children.empty()) {
-        return; // no ring is needed
-    }
     REAL const *const ofRings = values.GetPoints();
     auto const findIndices = [&](std::size_t child) -> RingCell const & {
         RingCell const &cell = face.GetChild(child);
-        _indices.resize(cell.GetColumns().size());
-        face.FindChildIndices(child, _indices.data());
+        values.FindChildIndices(face, child, _indices);
         return cell;
     };
     for (CellPlan::CornerPlace const &corner : plan[0].corners) {

@@ -49,7 +49,7 @@ public:
     /// \param resultStride  from one place to the next
     void Evaluate(CellType const &type, CellPlan const &plan, int size, REAL const *controlPoints,
                   std::ptrdiff_t stride, REAL *const *results, std::ptrdiff_t resultStride);
-    /// Overload for a plain face, from the points of its rings.
+    /// Overload for a plain face, from the points of its rings; the plan is not empty.
     void Evaluate(PlainFaceType const &type, RingValues<REAL> &values, CellPlan const &plan,
                   REAL *const *results, std::ptrdiff_t resultStride);
 

@@ -2,365 +2,281 @@
 #ifndef OPENSUBDIVHEX_BFR_EXT_CELL_PATCH_SUMS_TEMPLATE_H
 #define OPENSUBDIVHEX_BFR_EXT_CELL_PATCH_SUMS_TEMPLATE_H
 
-#include "lanes.h"
 #include "patchSums.h"
+#include "registers.h"
 
 #include <algorithm>
-#include <array>
-#include <cstring>
 #include <iterator>
+#include <limits>
 #include <type_traits>
 
-#ifdef __FMA__
-#include <immintrin.h>
-#endif
-
+// Included by one source file for each set of instructions: hence the unnamed namespace.
 namespace OpenSubdivHex::BfrExt::internal {
-
 namespace {
 
-// Some numbers of a point, which are computed with at once.  Products are fused with sums where the machine can, and
-// where this is said.
-#ifdef __FMA__
+/// Numbers of a point that are summed up at once.
+constexpr int kNumPointLanes = 4;
+
+/// \brief Some points, number by number: a register of each, with a lane for each point.
 template <typename REAL>
-struct RegisterOf;
-template <>
-struct RegisterOf<float> {
-    using Type = __m128;
-};
-template <>
-struct RegisterOf<double> {
-    using Type = __m256d;
-};
+struct PointColumns {
+    using Columns = Registers<REAL, 32>;
+    using Numbers = typename Columns::Lanes[kNumPointLanes];
+    using Point = Registers<REAL, kNumPointLanes * sizeof(REAL)>;
+    static_assert(PatchBlock<REAL>::kGroup == int(Columns::kSize));
 
-template <typename REAL>
-struct LanesOf {
-    static constexpr std::size_t kCount = Lanes<REAL>::kCount;
-    using Values = typename RegisterOf<REAL>::Type;
-    static_assert(sizeof(Values) == kCount * sizeof(REAL));
-
-    OPENSUBDIVHEX_INLINE static LanesOf Load(REAL const *from) {
-        LanesOf result;
-        std::memcpy(&result.values, from, sizeof(Values));
-        return result;
-    }
-    OPENSUBDIVHEX_INLINE LanesOf operator+(LanesOf const &other) const {
-        return {values + other.values};
-    }
-    OPENSUBDIVHEX_INLINE LanesOf operator-(LanesOf const &other) const {
-        return {values - other.values};
-    }
-    OPENSUBDIVHEX_INLINE LanesOf operator*(REAL factor) const {
-        return {values * Spread(factor).values};
-    }
-    OPENSUBDIVHEX_INLINE static LanesOf Spread(REAL number) {
-        return {Values{number, number, number, number}};
-    }
-
-    Values values;
+    /// Of points of \p size numbers.
+    OPENSUBDIVHEX_INLINE static void Load(REAL const *points, std::ptrdiff_t stride, int size,
+                                          int const *indices, Numbers &numbers);
+    /// The sum of all points.
+    OPENSUBDIVHEX_INLINE static typename Point::Lanes SumUp(Numbers const &numbers);
 };
 
-template <typename REAL>
-OPENSUBDIVHEX_INLINE LanesOf<REAL> addProduct(LanesOf<REAL> const &sum,
-                                              LanesOf<REAL> const &factors, REAL factor) {
-    auto const spread = LanesOf<REAL>::Spread(factor);
-    if constexpr (std::is_same_v<REAL, float>) {
-        return {_mm_fmadd_ps(factors.values, spread.values, sum.values)};
-    } else {
-        return {_mm256_fmadd_pd(factors.values, spread.values, sum.values)};
-    }
+#if defined(__GNUC__) && defined(__AVX2__)
+/// Turns rows of four numbers into columns, in each half of the registers.
+OPENSUBDIVHEX_INLINE void transposeFour(__m256 const (&rows)[4], __m256 (&columns)[4]) {
+    __m256d const low01 = _mm256_castps_pd(_mm256_unpacklo_ps(rows[0], rows[1]));
+    __m256d const low23 = _mm256_castps_pd(_mm256_unpacklo_ps(rows[2], rows[3]));
+    __m256d const high01 = _mm256_castps_pd(_mm256_unpackhi_ps(rows[0], rows[1]));
+    __m256d const high23 = _mm256_castps_pd(_mm256_unpackhi_ps(rows[2], rows[3]));
+    columns[0] = _mm256_castpd_ps(_mm256_unpacklo_pd(low01, low23));
+    columns[1] = _mm256_castpd_ps(_mm256_unpackhi_pd(low01, low23));
+    columns[2] = _mm256_castpd_ps(_mm256_unpacklo_pd(high01, high23));
+    columns[3] = _mm256_castpd_ps(_mm256_unpackhi_pd(high01, high23));
 }
-#else
-template <typename REAL>
-using LanesOf = Lanes<REAL>;
-
-template <typename REAL>
-OPENSUBDIVHEX_INLINE Lanes<REAL> addProduct(Lanes<REAL> const &sum, Lanes<REAL> const &factors,
-                                            REAL factor) {
-    return sum + factors * factor;
+OPENSUBDIVHEX_INLINE void transposeFour(__m256d const (&rows)[4], __m256d (&columns)[4]) {
+    __m256d const even01 = _mm256_unpacklo_pd(rows[0], rows[1]);
+    __m256d const even23 = _mm256_unpacklo_pd(rows[2], rows[3]);
+    __m256d const odd01 = _mm256_unpackhi_pd(rows[0], rows[1]);
+    __m256d const odd23 = _mm256_unpackhi_pd(rows[2], rows[3]);
+    columns[0] = _mm256_permute2f128_pd(even01, even23, 0x20);
+    columns[1] = _mm256_permute2f128_pd(odd01, odd23, 0x20);
+    columns[2] = _mm256_permute2f128_pd(even01, even23, 0x31);
+    columns[3] = _mm256_permute2f128_pd(odd01, odd23, 0x31);
 }
-#endif
 
-// Columns of a block, which are computed with at once.
-#ifdef __FMA__
-template <typename REAL>
-struct ColumnsOf;
 template <>
-struct ColumnsOf<float> {
-    using Type = __m256;
-    OPENSUBDIVHEX_INLINE static Type Load(float const *from) { return _mm256_load_ps(from); }
-    OPENSUBDIVHEX_INLINE static void Store(Type values, float *to) { _mm256_store_ps(to, values); }
-    OPENSUBDIVHEX_INLINE static Type AddProduct(Type sum, Type values, float factor) {
-        return _mm256_fmadd_ps(values, _mm256_set1_ps(factor), sum);
-    }
-};
+OPENSUBDIVHEX_INLINE void PointColumns<float>::Load(float const *points, std::ptrdiff_t stride,
+                                                    int size, int const *indices,
+                                                    Numbers &numbers) {
+    __m128i const wanted = _mm_cmpgt_epi32(_mm_set1_epi32(size), _mm_setr_epi32(0, 1, 2, 3));
+    auto const load = [&](int i) { return _mm_maskload_ps(points + indices[i] * stride, wanted); };
+    __m256 const rows[4] = {_mm256_set_m128(load(4), load(0)), _mm256_set_m128(load(5), load(1)),
+                            _mm256_set_m128(load(6), load(2)), _mm256_set_m128(load(7), load(3))};
+    transposeFour(rows, numbers);
+}
 template <>
-struct ColumnsOf<double> {
-    using Type = __m256d;
-    OPENSUBDIVHEX_INLINE static Type Load(double const *from) { return _mm256_load_pd(from); }
-    OPENSUBDIVHEX_INLINE static void Store(Type values, double *to) { _mm256_store_pd(to, values); }
-    OPENSUBDIVHEX_INLINE static Type AddProduct(Type sum, Type values, double factor) {
-        return _mm256_fmadd_pd(values, _mm256_set1_pd(factor), sum);
-    }
-};
-#else
-template <typename REAL>
-struct ColumnsOf {
-    struct Type {
-        REAL values[PatchBlock<REAL>::kPadding];
+OPENSUBDIVHEX_INLINE auto PointColumns<float>::SumUp(Numbers const &numbers) -> Point::Lanes {
+    __m256 rows[4];
+    transposeFour(numbers, rows);
+    __m256 const sum = (rows[0] + rows[1]) + (rows[2] + rows[3]);
+    return _mm256_castps256_ps128(sum) + _mm256_extractf128_ps(sum, 1);
+}
+
+template <>
+OPENSUBDIVHEX_INLINE void PointColumns<double>::Load(double const *points, std::ptrdiff_t stride,
+                                                     int size, int const *indices,
+                                                     Numbers &numbers) {
+    __m256i const wanted =
+        _mm256_cmpgt_epi64(_mm256_set1_epi64x(size), _mm256_setr_epi64x(0, 1, 2, 3));
+    auto const load = [&](int i) {
+        return _mm256_maskload_pd(points + indices[i] * stride, wanted);
     };
-    OPENSUBDIVHEX_INLINE static Type Load(REAL const *from) {
-        Type result;
-        std::copy_n(from, PatchBlock<REAL>::kPadding, result.values);
-        return result;
-    }
-    OPENSUBDIVHEX_INLINE static void Store(Type const &values, REAL *to) {
-        std::copy_n(values.values, PatchBlock<REAL>::kPadding, to);
-    }
-    OPENSUBDIVHEX_INLINE static Type AddProduct(Type const &sum, Type const &values, REAL factor) {
-        Type result;
-        for (int i = 0; i < PatchBlock<REAL>::kPadding; ++i) {
-            result.values[i] = sum.values[i] + values.values[i] * factor;
+    __m256d const rows[4] = {load(0), load(1), load(2), load(3)};
+    transposeFour(rows, numbers);
+}
+template <>
+OPENSUBDIVHEX_INLINE auto PointColumns<double>::SumUp(Numbers const &numbers) -> Point::Lanes {
+    __m256d rows[4];
+    transposeFour(numbers, rows);
+    return (rows[0] + rows[1]) + (rows[2] + rows[3]);
+}
+#else
+template <typename REAL>
+OPENSUBDIVHEX_INLINE void PointColumns<REAL>::Load(REAL const *points, std::ptrdiff_t stride,
+                                                   int size, int const *indices, Numbers &numbers) {
+    for (int k = 0; k < kNumPointLanes; ++k) {
+        numbers[k] = {};
+        for (std::size_t i = 0; k < size && i < Columns::kSize; ++i) {
+            numbers[k][i] = points[indices[i] * stride + k];
         }
-        return result;
     }
-};
+}
+template <typename REAL>
+OPENSUBDIVHEX_INLINE auto PointColumns<REAL>::SumUp(Numbers const &numbers) ->
+    typename Point::Lanes {
+    typename Point::Lanes sum{};
+    for (std::size_t i = 0; i < Columns::kSize; ++i) {
+        for (std::size_t k = 0; k < kNumPointLanes; ++k) {
+            sum[k] += numbers[k][i];
+        }
+    }
+    return sum;
+}
 #endif
 
-// What the rows of a block weigh in each result.
+/// The cubic Bernstein polynomials at a coordinate, and their derivatives.
+template <typename REAL>
+struct PatchCubics {
+    OPENSUBDIVHEX_INLINE explicit PatchCubics(double coordinate)
+        : PatchCubics(REAL(1 - coordinate), REAL(coordinate)) {}
+    OPENSUBDIVHEX_INLINE PatchCubics(REAL r, REAL s)
+        : toStart(r),
+          toEnd(s), ofOrder{{r * r * r, 3 * r * r * s, 3 * r * s * s, s * s * s},
+                            {-3 * r * r, 3 * r * (r - 2 * s), 3 * s * (2 * r - s), 3 * s * s},
+                            {6 * r, 6 * (s - 2 * r), 6 * (r - 2 * s), 6 * s}} {}
+
+    REAL toStart; ///< what the ends weigh
+    REAL toEnd;
+    REAL ofOrder[3][4];
+};
+
+/// \brief The point of a patch and its derivatives, as far as NUM_DERIVATIVES asks.
+///
+/// The rows of a block are weighed along s, then along t, and the columns by the result.
 template <int NUM_DERIVATIVES, typename REAL>
-class RowWeights {
+class PatchKernel {
 public:
-    static constexpr int kNumResults = NUM_DERIVATIVES == 0 ? 1 : NUM_DERIVATIVES == 1 ? 3 : 6;
-
-    OPENSUBDIVHEX_INLINE explicit RowWeights(PatchWeights<NUM_DERIVATIVES, REAL> const &weights) {
-        Cubic const s(weights.s);
-        Cubic const t(weights.t);
-        setProducts(0, 0, s.values, t.values);
-        if constexpr (NUM_DERIVATIVES > 0) {
-            for (int i = 0; i < 2; ++i) {
-                auto const &by = weights.byUv[i];
-                setProducts(1 + i, 0, scale(s.first, by[0]), t.values);
-                setProducts(1 + i, 1, s.values, scale(t.first, by[1]));
-            }
-        }
-        if constexpr (NUM_DERIVATIVES > 1) {
-            for (int k = 0; k < 3; ++k) {
-                auto const &by = weights.byUvTwice[k];
-                Four ofS;
-                Four ofT;
-                for (std::size_t i = 0; i < 4; ++i) {
-                    ofS[i] = s.second[i] * by[2] + s.first[i] * by[0];
-                    ofT[i] = t.second[i] * by[4] + t.first[i] * by[1];
-                }
-                setProducts(3 + k, 0, ofS, t.values);
-                setProducts(3 + k, 1, s.values, ofT);
-                setProducts(3 + k, 1, scale(s.first, by[3]), t.first);
-            }
-        }
-        for (int i = 0; i < kNumResults; ++i) {
-            REAL const *const shares = weights.shares;
-            auto const &[low, high] = _inner[i];
-            REAL const products[4] = {low.values[1] * shares[0], low.values[2] * shares[1],
-                                      high.values[2] * shares[2], high.values[1] * shares[3]};
-            std::copy_n(products, 4, values[i] + PatchRow::kNumBicubic);
-        }
-    }
-
-    alignas(16) REAL values[kNumResults][kNumPatchPoints];
-
-private:
-    using Four = std::array<REAL, 4>;
-
-    // The cubic Bernstein polynomials, and their derivatives without factors of the degree.
-    struct Cubic {
-        OPENSUBDIVHEX_INLINE explicit Cubic(PatchCoordinate<REAL> const &at)
-            : values{at.quadratic[0] * at.toStart,
-                     at.quadratic[0] * at.toEnd + at.quadratic[1] * at.toStart,
-                     at.quadratic[1] * at.toEnd + at.quadratic[2] * at.toStart,
-                     at.quadratic[2] * at.toEnd},
-              first{-at.quadratic[0], at.quadratic[0] - at.quadratic[1],
-                    at.quadratic[1] - at.quadratic[2], at.quadratic[2]},
-              second{at.toStart, at.toEnd - 2 * at.toStart, at.toStart - 2 * at.toEnd, at.toEnd} {}
-
-        Four values;
-        Four first;
-        Four second;
-    };
-
-    OPENSUBDIVHEX_INLINE static Four scale(Four const &values, REAL factor) {
-        return {values[0] * factor, values[1] * factor, values[2] * factor, values[3] * factor};
-    }
-
-    // Sets the products to numbers, or adds them to what there is.
-    OPENSUBDIVHEX_INLINE void setProducts(int result, int isSum, Four const &byS, Four const &byT) {
-        auto const ofS = LanesOf<REAL>::Load(byS.data());
-        for (std::size_t row = 0; row < 4; ++row) {
-            REAL *const to = values[result] + 4 * row;
-            LanesOf<REAL> const products =
-                isSum != 0 ? addProduct(LanesOf<REAL>::Load(to), ofS, byT[row]) : ofS * byT[row];
-            std::memcpy(to, &products.values, sizeof(products.values));
-            if (row == 1 || row == 2) {
-                _inner[result][row - 1] = products;
-            }
-        }
-    }
-
-    // The two rows with points inside of corners, in registers: reading what was just written takes long.
-    LanesOf<REAL> _inner[kNumResults][2];
-};
-
-// Some numbers of sums of points: the rows of a block are weighed, and so the points of its columns.
-//
-// IS_PACKED: points are three numbers each, without gaps; else numLanes of them are lanes.
-template <int NUM_DERIVATIVES, bool IS_PACKED, typename REAL>
-class BlockSums {
-public:
-    using Rows = RowWeights<NUM_DERIVATIVES, REAL>;
-    static constexpr int kNumResults = Rows::kNumResults;
-
-    OPENSUBDIVHEX_INLINE BlockSums(Rows const &rows, PatchBlock<REAL> const &block,
-                                   REAL const *points, std::ptrdiff_t stride, int numLanes)
-        : _rows(rows), _block(block), _points(points), _stride(IS_PACKED ? 3 : stride),
-          _numLanes(IS_PACKED ? 3 : numLanes), _paddedSize(_block.GetPaddedSize(block.numColumns)) {
-        setZero(_sums);
-        addTiles<kMaxTile>(0);
-    }
-
-    OPENSUBDIVHEX_INLINE void Write(REAL *const *results, int firstResult) const {
-        for (int i = 0; i < kNumResults; ++i) {
-            LanesOf<REAL> const sum = _sums[i][0] + _sums[i][1];
-            REAL numbers[LanesOf<REAL>::kCount];
-            std::memcpy(numbers, &sum.values, sizeof(numbers));
-            std::copy_n(numbers, IS_PACKED ? 3 : _numLanes, results[i] + firstResult);
-        }
-    }
-
-private:
-    using Columns = ColumnsOf<REAL>;
-    static constexpr int kWidth = PatchBlock<REAL>::kPadding;
-    // Registers of columns, so that the sums of all results are in registers.
-    static constexpr int kMaxTile = NUM_DERIVATIVES > 1 ? 2 : 4;
-
-    template <int TILE>
-    OPENSUBDIVHEX_INLINE void addTiles(int first) {
-        if constexpr (TILE > 0) {
-            for (; first + TILE * kWidth <= _paddedSize; first += TILE * kWidth) {
-                addTile<TILE>(first);
-            }
-            addTiles<TILE - 1>(first);
-        }
-    }
-
-    // Weighs some columns, and adds their points.
-    template <int TILE>
-    OPENSUBDIVHEX_INLINE void addTile(int first) {
-        typename Columns::Type weights[kNumResults][TILE];
-        setZero(weights);
-        REAL const *from = _block.weights + first;
-        for (int row = 0; row < kNumPatchPoints; ++row, from += _paddedSize) {
-            for (int i = 0; i < TILE; ++i) {
-                auto const columns = Columns::Load(from + i * kWidth);
-                for (int k = 0; k < kNumResults; ++k) {
-                    weights[k][i] =
-                        Columns::AddProduct(weights[k][i], columns, _rows.values[k][row]);
-                }
-            }
-        }
-        alignas(32) REAL numbers[kNumResults][TILE * kWidth];
-        for (int k = 0; k < kNumResults; ++k) {
-            for (int i = 0; i < TILE; ++i) {
-                Columns::Store(weights[k][i], numbers[k] + i * kWidth);
-            }
-        }
-        addPoints(numbers, std::min(TILE * kWidth, _block.numColumns - first), first);
-    }
-
-    // Adds the points of some columns, whose weights are given by result.
-    template <int SIZE>
-    OPENSUBDIVHEX_INLINE void addPoints(REAL const (&weights)[kNumResults][SIZE], int count,
-                                        int first) {
-        // In registers.
-        LanesOf<REAL> sums[kNumResults][2];
-        copySums(_sums, sums);
-        auto const add = [&](int i, int sum) {
-            int const column = first + i;
-            LanesOf<REAL> const point = load(_block.columns[column]);
-            for (int k = 0; k < kNumResults; ++k) {
-                sums[k][sum] = addProduct(sums[k][sum], point, weights[k][i]);
-            }
+    OPENSUBDIVHEX_INLINE explicit PatchKernel(PatchSums<REAL> const &all)
+        : _all(all), _s(all.place.s), _t(all.place.t) {
+        // The share of the first of two points inside of a corner; where both distances are 0, half.
+        auto const getShare = [](REAL ofFirst, REAL ofSecond) {
+            constexpr REAL kLeast = std::numeric_limits<REAL>::min();
+            return (ofFirst + kLeast) / (ofFirst + ofSecond + 2 * kLeast);
         };
-        // Two sums do not wait for each other.
-        int i = 0;
-        for (; i + 1 < count; i += 2) {
-            add(i, 0);
-            add(i + 1, 1);
-        }
-        if (i < count) {
-            add(i, 0);
-        }
-        copySums(sums, _sums);
+        _shares[0] = getShare(_s.toEnd, _t.toEnd);
+        _shares[1] = getShare(_t.toEnd, _s.toStart);
+        _shares[2] = getShare(_t.toStart, _s.toEnd);
+        _shares[3] = getShare(_s.toStart, _t.toStart);
     }
 
-    using Sums = LanesOf<REAL>[kNumResults][2];
-    OPENSUBDIVHEX_INLINE static void copySums(Sums const &from, Sums &to) {
-        for (int k = 0; k < kNumResults; ++k) {
-            to[k][0] = from[k][0];
-            to[k][1] = from[k][1];
+    /// Writes \p size numbers of the results, no more than four, from the first one on.
+    ///
+    /// \param size, stride  integral constants where they are known
+    template <typename SIZE, typename STRIDE>
+    OPENSUBDIVHEX_INLINE void Write(int first, SIZE size, STRIDE stride) const {
+        ColumnLanes sums[kNumSums][kNumPointLanes];
+        for (auto &sum : sums) {
+            std::fill(std::begin(sum), std::end(sum), ColumnLanes{});
         }
-    }
-    // GCC would keep an array in memory that is set to 0 as a whole.
-    template <typename T, std::size_t SIZE>
-    OPENSUBDIVHEX_INLINE static void setZero(T (&arrays)[kNumResults][SIZE]) {
-        for (auto &array : arrays) {
-            std::fill(std::begin(array), std::end(array), T{});
+        int const *columns = _all.block.columns;
+        REAL const *rows = _all.block.weights;
+        for (int left = _all.block.numColumns; left > 0; left -= kMaxColumns) {
+            ColumnLanes weights[kMaxColumns / kGroup][kNumSums];
+            int const numGroups = std::min(kMaxColumns, left) / kGroup;
+            for (int i = 0; i < numGroups; ++i, rows += kNumPatchPoints * kGroup) {
+                weighColumns(rows, weights[i]);
+            }
+            for (int i = 0; i < numGroups; ++i, columns += kGroup) {
+                ColumnLanes numbers[kNumPointLanes];
+                PointColumns<REAL>::Load(_all.points + first, stride, size, columns, numbers);
+                for (int sum = 0; sum < kNumSums; ++sum) {
+                    for (int k = 0; k < size; ++k) {
+                        Columns::AddProducts(sums[sum][k], weights[i][sum], numbers[k]);
+                    }
+                }
+            }
+        }
+        typename Point::Lanes bySt[kNumSums];
+        for (int i = 0; i < kNumSums; ++i) {
+            bySt[i] = PointColumns<REAL>::SumUp(sums[i]);
+        }
+        // Adds some of these by factors.
+        auto const write = [&](int result, auto const &...factors) {
+            typename Point::Lanes sum{};
+            int next = 1;
+            (Point::AddProducts(sum, bySt[next++], REAL(factors)), ...);
+            REAL numbers[kNumPointLanes];
+            Point::Store(sizeof...(factors) == 0 ? bySt[0] : sum, numbers);
+            std::copy_n(numbers, int(size), _all.results[result] + first);
+        };
+        write(0);
+        if constexpr (NUM_DERIVATIVES > 0) {
+            auto const &[s, t] = _all.place.first;
+            write(1, s[0], t[0]);
+            write(2, s[1], t[1]);
+            if constexpr (NUM_DERIVATIVES > 1) {
+                for (std::size_t i = 0; i < 3; ++i) {
+                    std::size_t const a = i / 2;
+                    std::size_t const b = (i + 1) / 2;
+                    auto const &[byS, byT] = _all.place.second[i];
+                    write(3 + int(i), byS, byT, s[a] * s[b], s[a] * t[b] + s[b] * t[a],
+                          t[a] * t[b]);
+                }
+            }
         }
     }
 
-    OPENSUBDIVHEX_INLINE LanesOf<REAL> load(int point) const {
-        REAL const *const from = _points + point * _stride;
-        if (IS_PACKED && point < _block.lastColumn) {
-            return LanesOf<REAL>::Load(from); // with a number of the next
+private:
+    using Columns = typename PointColumns<REAL>::Columns;
+    using ColumnLanes = typename Columns::Lanes;
+    using Point = typename PointColumns<REAL>::Point;
+    static constexpr int kGroup = PatchBlock<REAL>::kGroup;
+    static constexpr int kMaxColumns = 8 * kGroup; // whose weights are kept
+
+    /// The point; its derivatives by s, t; by s twice, both, and t twice.
+    static constexpr int kNumSums = NUM_DERIVATIVES == 0 ? 1 : NUM_DERIVATIVES == 1 ? 3 : 6;
+    static constexpr int kOrders[6][2] = {{0, 0}, {1, 0}, {0, 1}, {2, 0}, {1, 1}, {0, 2}};
+
+    OPENSUBDIVHEX_INLINE void weighColumns(REAL const *rows,
+                                           ColumnLanes (&weights)[kNumSums]) const {
+        for (int k = 0; k < 4; ++k) {
+            ColumnLanes alongS[NUM_DERIVATIVES + 1] = {};
+            for (int i = 0; i < 4; ++i) {
+                ColumnLanes row = Columns::Load(rows + (4 * k + i) * kGroup);
+                if ((k == 1 || k == 2) && (i == 1 || i == 2)) {
+                    int const corner = 2 * (k - 1) + i - 1;
+                    Columns::AddProducts(
+                        row, Columns::Load(rows + (PatchRow::kNumBicubic + corner) * kGroup),
+                        _shares[corner]);
+                }
+                for (int order = 0; order <= NUM_DERIVATIVES; ++order) {
+                    add(i, row, _s.ofOrder[order][i], alongS[order]);
+                }
+            }
+            for (int sum = 0; sum < kNumSums; ++sum) {
+                auto const [ofS, ofT] = kOrders[sum];
+                add(k, alongS[ofS], _t.ofOrder[ofT][k], weights[sum]);
+            }
         }
-        REAL numbers[LanesOf<REAL>::kCount] = {};
-        std::copy_n(from, _numLanes, numbers);
-        return LanesOf<REAL>::Load(numbers);
+    }
+    // Adds the products of a row, or sets the sum to those of the first one.
+    OPENSUBDIVHEX_INLINE static void add(int row, ColumnLanes const &factors, REAL factor,
+                                         ColumnLanes &sum) {
+        if (row == 0) {
+            sum = factors * Columns::Spread(factor);
+        } else {
+            Columns::AddProducts(sum, factors, factor);
+        }
     }
 
-    Rows const &_rows;
-    PatchBlock<REAL> const &_block;
-    REAL const *const _points;
-    std::ptrdiff_t const _stride;
-    int const _numLanes;
-    int const _paddedSize;
-    LanesOf<REAL> _sums[kNumResults][2]; // of even columns, and of odd ones
+    PatchSums<REAL> const &_all;
+    PatchCubics<REAL> const _s;
+    PatchCubics<REAL> const _t;
+    REAL _shares[4]; // of the first point inside of each corner
 };
 
-// Calls function(is packed, first, number) for lanes of points.
-template <typename REAL, typename FUNCTION>
-OPENSUBDIVHEX_INLINE void forLanes(int size, std::ptrdiff_t stride, FUNCTION const &function) {
-    if (size == 3 && stride == 3) { // by far the most
-        function(std::true_type(), 0, 3);
+template <int NUM_DERIVATIVES, typename REAL>
+void sumUpPatch(PatchSums<REAL> const &sums) {
+    PatchKernel<NUM_DERIVATIVES, REAL> const kernel(sums);
+    if (sums.size == 3 && sums.stride == 3) { // by far the most
+        constexpr std::integral_constant<int, 3> kThree{};
+        kernel.Write(0, kThree, kThree);
         return;
     }
-    constexpr int kLanes = int(LanesOf<REAL>::kCount);
-    for (int lane = 0; lane < size; lane += kLanes) {
-        function(std::false_type(), lane, std::min(kLanes, size - lane));
+    for (int first = 0; first < sums.size; first += kNumPointLanes) {
+        kernel.Write(first, std::min(kNumPointLanes, sums.size - first), sums.stride);
     }
 }
 
-template <int NUM_DERIVATIVES, typename REAL>
-void sumUpBlock(PatchWeights<NUM_DERIVATIVES, REAL> const &weights, PatchBlock<REAL> const &block,
-                REAL const *points, int size, std::ptrdiff_t stride, REAL *const *results) {
-    RowWeights<NUM_DERIVATIVES, REAL> const rows(weights);
-    forLanes<REAL>(size, stride, [&](auto isPacked, int lane, int numLanes) {
-        BlockSums<NUM_DERIVATIVES, isPacked(), REAL>(rows, block, points + lane, stride, numLanes)
-            .Write(results, lane);
-    });
+template <typename REAL>
+void sumUpPatch(PatchSums<REAL> const &sums) {
+    return sums.numDerivatives == 0   ? sumUpPatch<0>(sums)
+           : sums.numDerivatives == 1 ? sumUpPatch<1>(sums)
+                                      : sumUpPatch<2>(sums);
 }
 
 } // namespace
-
 } // namespace OpenSubdivHex::BfrExt::internal
 
 #endif

@@ -3,91 +3,14 @@
 #define OPENSUBDIVHEX_BFR_EXT_CELL_PLACE_KERNEL_TEMPLATE_H
 
 #include "placeKernel.h"
+#include "registers.h"
 
 #include <cstring>
 #include <type_traits>
 #include <utility>
 
-#ifdef __FMA__
-#include <immintrin.h>
-#endif
-
-// Included by one source file for each set of instructions, which must not share what the compiler
-// makes of it: hence the unnamed namespace.
 namespace OpenSubdivHex::BfrExt::internal {
 namespace {
-
-/// Numbers that are computed with at once, in a register where the machine has such.
-template <typename REAL, std::size_t BYTES>
-struct PlainLanes {
-    static constexpr std::size_t kSize = BYTES / sizeof(REAL);
-
-    PlainLanes operator*(REAL factor) const {
-        PlainLanes result;
-        for (std::size_t i = 0; i < kSize; ++i) {
-            result.values[i] = values[i] * factor;
-        }
-        return result;
-    }
-    PlainLanes &operator+=(PlainLanes const &other) {
-        for (std::size_t i = 0; i < kSize; ++i) {
-            values[i] += other.values[i];
-        }
-        return *this;
-    }
-    PlainLanes operator+(PlainLanes const &other) const { return PlainLanes(*this) += other; }
-    PlainLanes operator-(PlainLanes const &other) const {
-        PlainLanes result;
-        for (std::size_t i = 0; i < kSize; ++i) {
-            result.values[i] = values[i] - other.values[i];
-        }
-        return result;
-    }
-
-    REAL values[kSize];
-};
-
-template <typename REAL, std::size_t BYTES>
-struct LanesOf {
-    using Type = PlainLanes<REAL, BYTES>;
-};
-#if defined(__GNUC__)
-template <>
-struct LanesOf<float, 16> {
-    using Type = float __attribute__((vector_size(16)));
-};
-template <>
-struct LanesOf<double, 16> {
-    using Type = double __attribute__((vector_size(16)));
-};
-template <>
-struct LanesOf<float, 32> {
-    using Type = float __attribute__((vector_size(32)));
-};
-template <>
-struct LanesOf<double, 32> {
-    using Type = double __attribute__((vector_size(32)));
-};
-template <>
-struct LanesOf<float, 64> {
-    using Type = float __attribute__((vector_size(64)));
-};
-template <>
-struct LanesOf<double, 64> {
-    using Type = double __attribute__((vector_size(64)));
-};
-#endif
-
-/// Lanes as they lie in memory, aligned no more than numbers are.  They are read and written as such and
-/// never by std::memcpy(), with which compilers would keep all sums in memory.
-template <typename LANES>
-struct
-#if defined(__GNUC__)
-    __attribute__((packed, may_alias))
-#endif
-    LanesInMemory {
-    LANES lanes;
-};
 
 #if defined(__has_builtin)
 #if __has_builtin(__builtin_shufflevector)
@@ -111,54 +34,22 @@ LANES interleave(LANES const &x, LANES const &y, LANES const &z, std::index_sequ
 template <std::size_t BYTES, typename REAL>
 class TileSums {
 public:
-    using Lanes = typename LanesOf<REAL, BYTES>::Type;
-    static constexpr std::size_t kSize = BYTES / sizeof(REAL);
-    static_assert(sizeof(Lanes) == BYTES);
-
-    static Lanes Load(REAL const *from) {
-        return reinterpret_cast<LanesInMemory<Lanes> const *>(from)->lanes;
-    }
-    static void Store(Lanes const &lanes, REAL *to) {
-        reinterpret_cast<LanesInMemory<Lanes> *>(to)->lanes = lanes;
-    }
-
-    /// Adds products to sums, which are rounded once where the registers are those of machines that fuse the two.
-    static void AddProducts(Lanes &sums, Lanes const &factors, REAL factor) {
-#ifdef __AVX512F__
-        if constexpr (BYTES == 64 && std::is_same_v<REAL, float>) {
-            sums = Lanes(_mm512_fmadd_ps(__m512(factors), _mm512_set1_ps(factor), __m512(sums)));
-            return;
-        }
-        if constexpr (BYTES == 64 && std::is_same_v<REAL, double>) {
-            sums = Lanes(_mm512_fmadd_pd(__m512d(factors), _mm512_set1_pd(factor), __m512d(sums)));
-            return;
-        }
-#endif
-#if defined(__AVX2__) && defined(__FMA__)
-        if constexpr (BYTES == 32 && std::is_same_v<REAL, float>) {
-            sums = Lanes(_mm256_fmadd_ps(__m256(factors), _mm256_set1_ps(factor), __m256(sums)));
-            return;
-        }
-        if constexpr (BYTES == 32 && std::is_same_v<REAL, double>) {
-            sums = Lanes(_mm256_fmadd_pd(__m256d(factors), _mm256_set1_pd(factor), __m256d(sums)));
-            return;
-        }
-#endif
-        sums += factors * factor;
-    }
+    using In = Registers<REAL, BYTES>;
+    using Lanes = typename In::Lanes;
+    static constexpr std::size_t kSize = In::kSize;
 
     /// Stores kSize points, from those of the components.
     static void StorePoints(Lanes const &x, Lanes const &y, Lanes const &z, REAL *to) {
 #ifdef OPENSUBDIVHEX_HAS_SHUFFLES
         constexpr std::make_index_sequence<kSize> kIndices;
-        Store(interleave<0>(x, y, z, kIndices), to);
-        Store(interleave<1>(x, y, z, kIndices), to + kSize);
-        Store(interleave<2>(x, y, z, kIndices), to + 2 * kSize);
+        In::Store(interleave<0>(x, y, z, kIndices), to);
+        In::Store(interleave<1>(x, y, z, kIndices), to + kSize);
+        In::Store(interleave<2>(x, y, z, kIndices), to + 2 * kSize);
 #else
         REAL numbers[3][kSize];
-        Store(x, numbers[0]);
-        Store(y, numbers[1]);
-        Store(z, numbers[2]);
+        In::Store(x, numbers[0]);
+        In::Store(y, numbers[1]);
+        In::Store(z, numbers[2]);
         for (std::size_t i = 0; i < kSize; ++i) {
             for (std::size_t k = 0; k < 3; ++k) {
                 *to++ = numbers[k][i];
@@ -222,10 +113,10 @@ private:
             auto const place = std::ptrdiff_t(HAS_INDICES ? std::size_t(indices[i]) : i);
             REAL const *const point = points + place * stride;
             for (std::size_t lane = 0; lane < NUM_LANES; ++lane) {
-                Lanes ofLane = Load(weights + lane * kSize);
+                Lanes ofLane = In::Load(weights + lane * kSize);
                 keepInRegister(ofLane);
                 for (std::size_t k = 0; k < NUM_COMPONENTS; ++k) {
-                    AddProducts(sums[lane][k], ofLane, point[k]);
+                    In::AddProducts(sums[lane][k], ofLane, point[k]);
                 }
             }
             weights += width;
@@ -256,7 +147,7 @@ private:
     static void storeSums(Lanes const (&sums)[NUM_COMPONENTS], std::size_t first,
                           Numbers &numbers) {
         for (std::size_t k = 0; k < NUM_COMPONENTS; ++k) {
-            Store(sums[k], numbers[k] + first);
+            In::Store(sums[k], numbers[k] + first);
         }
     }
     static void storeSums(Lanes const (&sums)[3], std::size_t first, Points const &places) {

@@ -102,7 +102,7 @@ static_assert(PlainFaceKey::kMaxVerts <= InnerRings::kMaxFaces);
 
 // If several threads do so at once, the first one makes it for all.
 FaceRings const &PlainFaceType::makeRings() const {
-    auto rings = std::make_unique<FaceRings const>(makeCell(false), _types._ringCells);
+    auto rings = std::make_unique<FaceRings const>(makeCell(), _types._ringCells);
     FaceRings const *expected = nullptr;
     if (_rings.compare_exchange_strong(expected, rings.get(), std::memory_order_acq_rel)) {
         _types._types.GetMemory().Add(internal::GetHeapSize(rings));
@@ -113,14 +113,14 @@ FaceRings const &PlainFaceType::makeRings() const {
 
 // Threads that do so at once find the same.
 CellType const &PlainFaceType::make() const {
-    CellType const &type = _types._types.Find(makeCell(true), _types._ringCells.GetRules());
+    CellType const &type = _types._types.Find(makeCell(), _types._ringCells.GetRules());
     if (!_type.exchange(&type, std::memory_order_acq_rel)) {
         --_types._numUnmade;
     }
     return type;
 }
 
-CellPatch PlainFaceType::makeCell(bool hasSignature) const {
+CellPatch PlainFaceType::makeCell() const {
     static thread_local GrowingPatch patch;
     patch.Start(getFaceSize(getKey()));
     patch.KeepFaces();
@@ -129,7 +129,7 @@ CellPatch PlainFaceType::makeCell(bool hasSignature) const {
     std::vector<Far::Index> faceVerts;
     patch.GetFaces(faceSizes, faceVerts);
     return FarExt::internal::MakePlainBaseCell(std::move(faceSizes), std::move(faceVerts),
-                                               _numVerts, GetNumPoints(), hasSignature);
+                                               _numVerts, GetNumPoints());
 }
 
 namespace {
@@ -190,7 +190,7 @@ CellType::BorderItem PlainFaceType::makeLatticeItem(CellPatch const &cell, int c
     LatticeItem const &lattice = _types._ringCells.FindLatticeItem(
         isEdge ? CellKind::Edge : CellKind::Vertex, cell.GetNumCorners(), [&] {
             CellPatch patch = std::move(GatherBorder(cell, turns, rules.sdcOptions)[item]);
-            CellType const &type = _types._types.Find(CellPatch(patch), rules);
+            CellType const &type = _types._types.Find(patch, rules);
             return LatticeItem{std::move(patch), &type};
         });
     // The corner of the face, or of another one, that is the first of the item.
@@ -214,7 +214,7 @@ CellType::BorderItem const &PlainFaceType::GetLatticeItem(int const *turns,
             PatternTable::GetKind<double>(PatternOf::LatticeItem), key, key + 2, make);
     };
     return get(item, [&] {
-        CellPatch const cell = makeCell(false);
+        CellPatch const cell = makeCell();
         // The others are asked for, too.
         FaceRings const &rings = GetRings();
         int const numEdges = cell.GetNumCorners();

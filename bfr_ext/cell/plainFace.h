@@ -93,7 +93,7 @@ private:
     std::uint8_t const *getKey() const { return reinterpret_cast<std::uint8_t const *>(this + 1); }
     CellType const &make() const;
     FaceRings const &makeRings() const;
-    FarExt::internal::CellPatch makeCell(bool hasSignature) const;
+    FarExt::internal::CellPatch makeCell() const;
     CellType::BorderItem makeLatticeItem(FarExt::internal::CellPatch const &cell, int const *turns,
                                          std::size_t item) const;
 

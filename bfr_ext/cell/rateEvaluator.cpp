@@ -120,11 +120,11 @@ void RateEvaluator<REAL>::Evaluate(PlainFaceType const &type) {
     RingValues<REAL> &values = _border.GetRingValues();
     auto const getSource = [&](std::size_t child) -> Source {
         RingCell const &cell = face.GetChild(child);
-        indices.resize(cell.GetColumns().size());
-        face.FindChildIndices(child, indices.data());
-        return {{cell.GetType(), &cell, values.GetPoints(), std::ptrdiff_t(values.GetPaddedSize()),
-                 indices.data()},
-                child};
+        REAL const *const points = values.GetPoints();
+        values.FindChildIndices(face, child, indices);
+        return {
+            {cell.GetType(), &cell, points, std::ptrdiff_t(values.GetPaddedSize()), indices.data()},
+            child};
     };
     forEachEdge([&](int edge, int rate, int first) {
         evaluateBorder(edge, rate, first);

@@ -17,9 +17,6 @@ namespace {
 
 using Cell = std::pair<CellPatch, std::vector<RingLayout>>;
 
-// The place of the vertex of a ring; others are behind the begin of the block of face 0.
-constexpr int kRingCenter = -1;
-
 CellRefinement refine(CellPatch const &cell, CellRules const &rules) {
     return RefineCell(cell, rules.sdcOptions, rules.hexSchemeOptions, rules.interpolation);
 }
@@ -52,7 +49,6 @@ RingCells::Key findKey(std::vector<RingLayout> const &rings) {
     for (RingLayout const &ring : rings) {
         key.push_back(int(ring.faceSizes.size()));
         key.insert(key.end(), ring.faceSizes.begin(), ring.faceSizes.end());
-        addVertex(ring.center);
         std::for_each(ring.verts.begin(), ring.verts.end(), addVertex);
         key.insert(key.end(), ring.flags.begin(), ring.flags.end());
     }
@@ -103,9 +99,6 @@ RingPlaces::RingPlaces(std::vector<Far::Index> const &verts, std::vector<RingLay
     for (std::size_t point = 0; point < verts.size(); ++point) {
         int const vert = verts[point];
         Column column = {-1, 0, int(point)};
-        if (vert == rings[0].center) {
-            column = {0, kRingCenter, int(point)};
-        }
         for (int ring = 0; ring < int(rings.size()); ++ring) {
             std::vector<int> const &ofRing = rings[std::size_t(ring)].verts;
             int const place = int(std::find(ofRing.begin(), ofRing.end(), vert) - ofRing.begin());
@@ -120,14 +113,11 @@ RingPlaces::RingPlaces(std::vector<Far::Index> const &verts, std::vector<RingLay
     std::sort(columns.begin(), columns.end(), [](Column const &a, Column const &b) {
         return std::make_pair(a.ring, a.place) < std::make_pair(b.ring, b.place);
     });
-    assert(columns[0].place == kRingCenter);
     for (Column const &column : columns) {
         _columns.push_back(column.point);
         _ends.resize(std::size_t(column.ring) + 1, _places.size());
-        if (column.place != kRingCenter) {
-            _places.push_back(column.place);
-            ++_ends.back();
-        }
+        _places.push_back(column.place);
+        ++_ends.back();
     }
 }
 
@@ -302,81 +292,95 @@ FaceRings::FaceRings(CellPatch const &cell, RingCells &cells) : _patterns(cells.
                              [&] { return Maker(cell, cells).Make(); });
 }
 
-void FaceRings::findIndices(std::size_t child, RingPlaces const &places, RingStep step,
-                            int *indices) const {
-    int const numRings = int(_rings.GetRings().size());
-    int const first = child == 0 ? 0 : int(child) - 1;
-    auto const getBlock = [&](int ring) {
-        int const own = first + ring;
-        return _rings.GetBlock(own < numRings ? own : own - numRings, 0, step);
-    };
-    places.FindIndices(_rings.GetCenter(first, 0, step), getBlock, indices);
-}
-
-// The face to the left of the edge is the first of both rings: this one, or that across the edge.
-void FaceRings::FindLongEdgeIndices(int edge, bool isReversed, int *indices) const {
-    int const next = edge + 1 < int(_rings.GetRings().size()) ? edge + 1 : 0;
-    int const start = isReversed ? next : edge;
-    int const first = isReversed ? 1 : 0;
-    int const end = isReversed ? edge : next;
-    RingStep const step = _rings.GetLastStep();
-    auto const getBlock = [&](int ring) {
-        return ring == 0 ? _rings.GetBlock(start, first, step) : _rings.GetBlock(end, -first, step);
-    };
-    GetLongEdge(edge, isReversed)
-        ->GetPlaces()
-        .FindIndices(_rings.GetCenter(start, first, step), getBlock, indices);
+template <typename REAL>
+void RingValues<REAL>::Set(VertexRings const &rings, int const *turns,
+                           RingSources<REAL> const &sources) {
+    _rings = &rings;
+    _sources = sources;
+    _paddedSize = StepMatrix::GetPaddedSize(sources.size);
+    if (_sources.shared && !_sources.shared->HasRoom(rings.GetNumPoints(), _paddedSize)) {
+        _sources.shared = nullptr;
+    }
+    _ownRings.resize(rings.GetRings().size());
+    for (std::size_t ring = 0; ring < _ownRings.size(); ++ring) {
+        _ownRings[ring] = {turns ? rings.GetRings()[ring].GetTurn(turns[ring]) : 0, -1};
+    }
+    _hasControlPoints = false;
 }
 
 template <typename REAL>
-void RingValues<REAL>::Set(VertexRings const &rings, std::size_t numPoints, int const *indices,
-                           REAL const *points, std::ptrdiff_t stride, std::size_t size) {
-    _rings = &rings;
-    _size = size;
-    _paddedSize = StepMatrix::GetPaddedSize(size);
+void RingValues<REAL>::find(std::size_t ring) {
+    OwnRing &own = _ownRings[ring];
+    if (own.first >= 0) {
+        return;
+    }
+    if (!_sources.shared) {
+        own.first = int((makeOwn(ring) - _points.data()) / std::ptrdiff_t(_paddedSize));
+        return;
+    }
+    std::size_t const numPoints = _rings->GetRings()[ring].GetNumPoints(_rings->GetLastStep());
+    own.first = int(_sources.shared->FindRing(getVertex(ring), numPoints, _paddedSize,
+                                              [&](REAL *points) { make(ring, points); }));
+}
+
+// A ring of which nothing but the surface at its vertex is asked for is not worth sharing.
+template <typename REAL>
+REAL const *RingValues<REAL>::findForVertex(std::size_t ring) {
+    if (_sources.shared && _ownRings[ring].first < 0 &&
+        !_sources.shared->HasRing(getVertex(ring), _paddedSize)) {
+        return makeOwn(ring);
+    }
+    find(ring);
+    return getPoints() + std::size_t(_ownRings[ring].first) * _paddedSize;
+}
+
+template <typename REAL>
+REAL *RingValues<REAL>::makeOwn(std::size_t ring) {
+    std::size_t const first =
+        _rings->GetRings()[ring].firstPoints[std::size_t(_rings->GetLastStep())];
+    _points.resize(std::max(_points.size(), _rings->GetNumPoints() * _paddedSize));
+    make(ring, &_points[first * _paddedSize]);
+    return &_points[first * _paddedSize];
+}
+
+// Writes the points of the last step.
+template <typename REAL>
+void RingValues<REAL>::make(std::size_t ring, REAL *last) {
     auto const grow = [](std::vector<REAL> &numbers, std::size_t count) {
         numbers.resize(std::max(numbers.size(), count));
     };
-    grow(_controlPoints, (numPoints + 1) * _paddedSize);
-    grow(_points, rings.GetNumPoints() * _paddedSize);
-    grow(_center, _paddedSize);
-    REAL *to = _controlPoints.data();
-    for (std::size_t i = 0; i < numPoints; ++i, to += _paddedSize) {
-        std::ptrdiff_t const point = indices ? indices[i] : std::ptrdiff_t(i);
-        StepMatrix::Pad(points + point * stride, size, to);
+    if (!_hasControlPoints) {
+        _hasControlPoints = true;
+        grow(_controlPoints, (_sources.numPoints + 1) * _paddedSize);
+        REAL *to = _controlPoints.data();
+        for (std::size_t i = 0; i < _sources.numPoints; ++i, to += _paddedSize) {
+            StepMatrix::Pad(_sources.points + std::ptrdiff_t(_sources.GetPoint(i)) * _sources.stride,
+                            _sources.size, to);
+        }
+        std::fill_n(to, _paddedSize, REAL(0));
     }
-    std::fill_n(to, _paddedSize, REAL(0));
-    _hasAll = false;
-    _lastRing = -1;
+    REAL *first = last;
+    if (_rings->GetLastStep() != RingStep::First) {
+        grow(_firstStep, _rings->GetRings()[ring].GetNumPoints(RingStep::First) * _paddedSize);
+        first = _firstStep.data();
+    }
+    _rings->Apply(ring, _ownRings[ring].turn, _controlPoints.data(), _paddedSize, first, last);
 }
 
 template <typename REAL>
-void RingValues<REAL>::EvaluateVertex(RingCell const &vVertex, int ring, int firstFace,
-                                      REAL *result) {
-    if (!_hasAll && _lastRing != ring) {
-        _lastRing = ring;
-        _rings->ApplyRing(std::size_t(ring), _controlPoints.data(), _paddedSize, _points.data());
-    }
-    Ring const &ofRing = _rings->GetRings()[std::size_t(ring)];
+void RingValues<REAL>::EvaluateVertex(RingCell const &vVertex, int ring, REAL *result) {
     std::vector<REAL> const &weights = vVertex.GetVertexWeights<REAL>();
     std::vector<int> const &places = vVertex.GetPlaces().GetPlaces();
-    assert(weights.size() == places.size() + 1);
-    RingStep const step = _rings->GetLastStep();
-    _rings->ApplyCenter(ring, firstFace, _controlPoints.data(), _points.data(), _paddedSize,
-                        _center.data());
-    std::size_t const first = ofRing.GetOffset(firstFace, step);
-    std::size_t const numPoints = ofRing.GetOffset(ofRing.GetNumFaces(), step);
+    assert(weights.size() == places.size());
     constexpr std::size_t kNumSums = 4; // that do not wait for each other
     std::size_t const numInFours = places.size() / kNumSums * kNumSums;
     constexpr std::size_t kLanes = Lanes<REAL>::kCount;
-    for (std::size_t lane = 0; lane < _size; lane += kLanes) {
-        REAL const *const blocks = &_points[_rings->GetBlock(ring, 0, step) * _paddedSize] + lane;
-        Lanes<REAL> sums[kNumSums] = {Lanes<REAL>::Load(&_center[lane]) * weights[0]};
+    REAL const *const points = findForVertex(std::size_t(ring));
+    for (std::size_t lane = 0; lane < _sources.size; lane += kLanes) {
+        Lanes<REAL> sums[kNumSums] = {};
         auto const add = [&](std::size_t k, Lanes<REAL> &sum) {
-            std::size_t const place = first + std::size_t(places[k]);
-            REAL const *const point =
-                blocks + (place < numPoints ? place : place - numPoints) * _paddedSize;
-            sum = sum + Lanes<REAL>::Load(point) * weights[1 + k];
+            REAL const *const point = points + std::size_t(places[k]) * _paddedSize;
+            sum = sum + Lanes<REAL>::Load(point + lane) * weights[k];
         };
         for (std::size_t k = 0; k < numInFours; k += kNumSums) {
             for (std::size_t i = 0; i < kNumSums; ++i) {
@@ -387,7 +391,7 @@ void RingValues<REAL>::EvaluateVertex(RingCell const &vVertex, int ring, int fir
             add(k, sums[k - numInFours]);
         }
         Lanes<REAL> const sum = (sums[0] + sums[1]) + (sums[2] + sums[3]);
-        std::copy_n(sum.values, std::min(kLanes, _size - lane), result + lane);
+        std::copy_n(sum.values, std::min(kLanes, _sources.size - lane), result + lane);
     }
 }
 

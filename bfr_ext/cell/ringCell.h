@@ -2,6 +2,7 @@
 #ifndef OPENSUBDIVHEX_BFR_EXT_CELL_RING_CELL_H
 #define OPENSUBDIVHEX_BFR_EXT_CELL_RING_CELL_H
 
+#include "sharedRings.h"
 #include "vertexRings.h"
 
 #include <memory>
@@ -15,29 +16,26 @@ public:
     /// Has no places.
     RingPlaces() = default;
     /// \param verts  of the level that the step makes
-    /// \param rings  which have all of these, the first one its vertex
+    /// \param rings  which have all of these
     RingPlaces(std::vector<Far::Index> const &verts, std::vector<RingLayout> const &rings);
 
     /// \brief By *column*, in the order of rings, which of the vertices it is.
     std::vector<int> const &GetColumns() const { return _columns; }
     std::size_t GetHeapSize() const { return GetHeapSizes(_columns, _places, _ends); }
-    /// \brief By column but the first, its place behind the begin of the block of its ring's face 0.
+    /// \brief By column, its place behind the begin of the block of its ring's face 0.
     ///
     /// A ring has places without a column where it has a vertex twice, since two edges join the same
     /// vertices.
     std::vector<int> const &GetPlaces() const { return _places; }
     /// \brief Writes by column which of the points of rings it is.
     ///
-    /// \param center    the point of the first ring's vertex
-    /// \param getBlock  gives by ring the first point of the block of its face 0
+    /// \param getPoints  gives by ring its RingPoints, seen from its face 0
     template <typename GET>
-    void FindIndices(std::size_t center, GET const &getBlock, int *indices) const {
-        *indices++ = int(center);
+    void FindIndices(GET const &getPoints, int *indices) const {
         std::size_t begin = 0;
         for (std::size_t ring = 0; ring < _ends.size(); ++ring) {
             std::size_t const end = _ends[ring];
-            addToAll(int(getBlock(int(ring))), _places.data() + begin, end - begin,
-                     indices + begin);
+            findIndices(getPoints(int(ring)), _places.data() + begin, end - begin, indices + begin);
             begin = end;
         }
     }
@@ -47,27 +45,30 @@ public:
     void AddKey(std::vector<int> &key) const;
 
 private:
-    // Writes sums of a number with some others, four at a time, the last four of which may be written twice: loops of
+    // Writes which points some places of a ring are, four at a time, the last four of which may be written twice: loops of
     // different lengths cost more than sums.
-    static void addToAll(int number, int const *from, std::size_t count, int *to) {
+    static void findIndices(RingPoints const &points, int const *places, std::size_t count,
+                            int *to) {
         constexpr std::size_t kStep = 4;
-        auto const addToFour = [&](std::size_t first) {
-            int sums[kStep];
+        auto const find = [&](int place) {
+            int const offset = points.offset + place;
+            return points.first + (offset < points.count ? offset : offset - points.count);
+        };
+        auto const findFour = [&](std::size_t first) {
+            int found[kStep];
             for (std::size_t i = 0; i < kStep; ++i) {
-                sums[i] = number + from[first + i];
+                found[i] = find(places[first + i]);
             }
-            std::copy_n(sums, kStep, to + first);
+            std::copy_n(found, kStep, to + first);
         };
         if (count < kStep) {
-            for (std::size_t i = 0; i < count; ++i) {
-                to[i] = number + from[i];
-            }
+            std::transform(places, places + count, to, find);
             return;
         }
         for (std::size_t first = 0; first + kStep < count; first += kStep) {
-            addToFour(first);
+            findFour(first);
         }
-        addToFour(count - kStep);
+        findFour(count - kStep);
     }
 
     std::vector<int> _columns;
@@ -248,13 +249,21 @@ public:
     RingCell const &GetChild(std::size_t child) const {
         return child == 0 ? *_cells->whole : *_cells->edges[child - 1].half;
     }
-    /// Writes the indices of what a child has sums of.
-    void FindChildIndices(std::size_t child, int *indices) const {
-        findIndices(child, GetChild(child).GetPlaces(), _rings.GetLastStep(), indices);
-    }
-    /// Writes those of the points of its type.
-    void FindChildPoints(std::size_t child, int *indices) const {
-        findIndices(child, GetChild(child).GetPoints(), RingStep::First, indices);
+    /// \brief Writes which points of rings a child has.
+    ///
+    /// \param places     those of the child, or of the points of its type
+    /// \param getPoints  gives the RingPoints of a ring, seen from a face
+    template <typename GET>
+    void FindChildIndices(std::size_t child, RingPlaces const &places, GET const &getPoints,
+                          int *indices) const {
+        int const numRings = int(_cells->edges.size());
+        int const first = child == 0 ? 0 : int(child) - 1;
+        places.FindIndices(
+            [&](int ring) {
+                int const own = first + ring;
+                return getPoints(own < numRings ? own : own - numRings, 0);
+            },
+            indices);
     }
 
     /// The long edge of an edge, which may run against the face; null where it is in a lattice.
@@ -263,8 +272,19 @@ public:
                    ? nullptr
                    : _cells->edges[std::size_t(edge)].longEdges[isReversed ? 1 : 0];
     }
-    /// Writes the indices of a long edge.
-    void FindLongEdgeIndices(int edge, bool isReversed, int *indices) const;
+    /// \brief Writes which points of rings a long edge has.
+    ///
+    /// \param getPoints  as of FindChildIndices()
+    template <typename GET>
+    void FindLongEdgeIndices(int edge, bool isReversed, GET const &getPoints, int *indices) const {
+        int const next = edge + 1 < int(_cells->edges.size()) ? edge + 1 : 0;
+        int const verts[2] = {isReversed ? next : edge, isReversed ? edge : next};
+        // The face to the left of the edge is the first of both rings: this one, or that across the edge.
+        int const faces[2] = {isReversed ? 1 : 0, isReversed ? -1 : 0};
+        GetLongEdge(edge, isReversed)
+            ->GetPlaces()
+            .FindIndices([&](int ring) { return getPoints(verts[ring], faces[ring]); }, indices);
+    }
 
     /// The V-vertex of a vertex with so many faces before this one; null where it is in a lattice.
     RingCell const *GetVVertex(int vert, int turn) const {
@@ -275,46 +295,98 @@ public:
 private:
     class Maker;
 
-    void findIndices(std::size_t child, RingPlaces const &places, RingStep step,
-                     int *indices) const;
-
     VertexRings _rings;
     RingFace const *_cells;
     mutable PatternTable _patterns;
+};
+
+/// \brief The points that a face has, or an item of a face.
+///
+/// \tparam REAL  precision
+template <typename REAL>
+struct RingSources {
+    /// Number of a point of the face, or of the mesh.
+    Far::Index GetPoint(std::size_t i) const {
+        int const ofFace = indices ? indices[i] : int(i);
+        return meshPoints ? meshPoints[ofFace] : ofFace;
+    }
+
+    REAL const *points;
+    std::ptrdiff_t stride; ///< from one to the next, in numbers
+    std::size_t size;      ///< of a point
+    std::size_t numPoints;
+    int const *indices; ///< which points of the face they are, or null: all in turn
+    /// Which points of the mesh those of the face are, or null: \c points has those of the face.
+    Far::Index const *meshPoints = nullptr;
+    /// Of the points of the mesh, or null.
+    SharedRings<REAL> *shared = nullptr;
 };
 
 /// The points of rings, evaluated when they are asked for.
 template <typename REAL>
 class RingValues {
 public:
-    /// \param indices  which points those of the rings are, or null: all in turn
-    /// \param size     numbers of a point; they are \p stride numbers apart
-    void Set(VertexRings const &rings, std::size_t numPoints, int const *indices,
-             REAL const *points, std::ptrdiff_t stride, std::size_t size);
+    /// \param turns    by ring, of its face 0, from -1 to the number of faces; null: 0
+    /// \param sources  of the rings, which must live as long
+    void Set(VertexRings const &rings, int const *turns, RingSources<REAL> const &sources);
 
-    std::size_t GetSize() const { return _size; }
+    std::size_t GetSize() const { return _sources.size; }
     /// From one point to the next.
     std::size_t GetPaddedSize() const { return _paddedSize; }
-    /// The points of all rings.
+    /// The points of all rings, of the last step.
     REAL const *GetPoints() {
-        if (!_hasAll) {
-            _hasAll = true;
-            _rings->Apply(_controlPoints.data(), _paddedSize, _points.data());
+        for (std::size_t ring = 0; ring < _ownRings.size(); ++ring) {
+            find(ring);
         }
-        return _points.data();
+        return getPoints();
     }
-    /// Writes the point of the surface at a vertex, whose first face is \p firstFace of its ring.
-    void EvaluateVertex(RingCell const &vVertex, int ring, int firstFace, REAL *result);
+    /// Where among them those of a ring lie, seen from a face.
+    RingPoints GetPointsOfRing(int ring, int face) {
+        find(std::size_t(ring));
+        OwnRing const &own = _ownRings[std::size_t(ring)];
+        RingPoints points = _rings->GetPoints(ring, own.turn, face, _rings->GetLastStep());
+        points.first = own.first;
+        return points;
+    }
+    /// Finds which of them a child of the face has that has the rings.
+    void FindChildIndices(FaceRings const &face, std::size_t child,
+                          std::vector<int> &indices) {
+        RingPlaces const &places = face.GetChild(child).GetPlaces();
+        indices.resize(places.GetColumns().size());
+        face.FindChildIndices(
+            child, places, [&](int ring, int ofRing) { return GetPointsOfRing(ring, ofRing); },
+            indices.data());
+    }
+    /// \brief Writes the point of the surface at the vertex of a ring.
+    ///
+    /// \param vVertex  from the face on that comes first in the vertex's order
+    void EvaluateVertex(RingCell const &vVertex, int ring, REAL *result);
 
 private:
+    struct OwnRing {
+        int turn;
+        int first; // point, of the last step; -1: not made
+    };
+
+    REAL const *getPoints() const {
+        return _sources.shared ? _sources.shared->GetPoints() : _points.data();
+    }
+    Far::Index getVertex(std::size_t ring) const {
+        return _sources.GetPoint(std::size_t(_rings->GetVertex(ring)));
+    }
+    void find(std::size_t ring);
+    REAL const *findForVertex(std::size_t ring);
+    REAL *makeOwn(std::size_t ring);
+    void make(std::size_t ring, REAL *last);
+
     VertexRings const *_rings = nullptr;
-    std::size_t _size = 0;
+    RingSources<REAL> _sources = {};
     std::size_t _paddedSize = 0;
-    bool _hasAll = false; // whether there are the points of all rings
-    int _lastRing = -1;   // else of this one; -1: of none
+    std::vector<OwnRing> _ownRings; // by ring
+    bool _hasControlPoints = false;
     std::vector<REAL> _controlPoints;
-    std::vector<REAL> _points;
-    std::vector<REAL> _center;
+    std::vector<REAL> _firstStep; // of a ring
+    std::vector<REAL> _points;    // of the last step
 };
 
 extern template class RingValues<float>;

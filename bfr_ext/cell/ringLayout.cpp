@@ -57,7 +57,7 @@ RingLayout RingLayout::From(int firstFace) const {
     firstFace = (firstFace + numFaces) % numFaces;
     int first = 0;
     for (int face = 0; face < firstFace; ++face) {
-        first += 1 + faceSizes[std::size_t(face)];
+        first += int(Ring::GetNumOthers(RingStep::First)) + faceSizes[std::size_t(face)];
     }
     RingLayout result = *this;
     auto const rotate = [](std::vector<int> &numbers, int begin) {
@@ -78,17 +78,19 @@ std::vector<RingLayout> FindRingLayouts(LimitPatch const &patch, std::vector<int
     std::vector<int> ring;
     std::vector<int> ringOfNeighbor;
     for (int const firstCorner : corners) {
-        RingLayout layout = {ofPatch.GetVertex(firstCorner), {}, {}, {}};
+        RingLayout layout;
         ofPatch.FindRing(firstCorner, ring);
         std::size_t numVertsOfRing = 0;
         for (int const corner : ring) {
-            numVertsOfRing += 1 + std::size_t(ofPatch.GetFaceSize(corner));
+            numVertsOfRing +=
+                Ring::GetNumOthers(RingStep::First) + std::size_t(ofPatch.GetFaceSize(corner));
         }
         layout.faceSizes.reserve(ring.size());
         layout.verts.reserve(numVertsOfRing);
         for (int const corner : ring) {
             int const size = ofPatch.GetFaceSize(corner);
             layout.faceSizes.push_back(size);
+            layout.verts.push_back(ofPatch.GetVertex(corner));
             layout.verts.push_back(ofPatch.GetVertex(ofPatch.GetNext(corner, 1)));
             for (int i = 0; i < size; ++i) {
                 layout.verts.push_back(numVerts + ofPatch.GetNext(corner, i));
@@ -109,27 +111,29 @@ std::vector<RingLayout> FindInnerLayouts(LimitPatch const &patch,
     std::vector<RingLayout> layouts;
     layouts.reserve(rings.size());
     for (RingLayout const &ring : rings) {
-        RingLayout layout = {made.FindVVertex(ring.center), ring.faceSizes, {}, {}};
+        int const outerCenter = ring.verts[0];
+        int const center = made.FindVVertex(outerCenter);
+        RingLayout layout = {ring.faceSizes, {}, {}};
         auto const addFVertices = [&](int const *verts, int size) {
             for (int i = 0; i < size; ++i) {
                 layout.verts.push_back(made.FindFVertex(verts[i], verts[(i + 1) % size]));
             }
         };
-        // The block of a face: the neighbour where it begins, and its F-vertices.
-        int const *block = ring.verts.data();
-        int sizeBefore = ring.faceSizes.back();
-        int const *before = &ring.verts.back() - sizeBefore;
+        // The block of a face: the vertex, the neighbour where the face begins, and the F-vertices.
+        int const *neighbor = &ring.verts[1];
+        int const *lastBefore = &ring.verts.back();
+        int const *firstBefore = lastBefore - (ring.faceSizes.back() - 1);
         for (int const size : ring.faceSizes) {
-            std::array<int, 6> const hexagon = {ring.center, before[1], before[sizeBefore],
-                                                block[0],    block[2],  block[1]};
-            layout.verts.push_back(RingLayout::kNone);
-            layout.verts.push_back(layout.center);
-            layout.verts.push_back(made.FindVVertex(block[1]));
+            int const *const verts = neighbor + 1;
+            std::array<int, 6> const hexagon = {outerCenter, *firstBefore, *lastBefore,
+                                                *neighbor,   verts[1],     verts[0]};
+            layout.verts.push_back(center);
+            layout.verts.push_back(made.FindVVertex(verts[0]));
             addFVertices(hexagon.data(), int(hexagon.size()));
-            addFVertices(block + 1, size);
-            before = block;
-            sizeBefore = size;
-            block += 1 + size;
+            addFVertices(verts, size);
+            firstBefore = verts;
+            lastBefore = verts + size - 1;
+            neighbor += int(Ring::GetNumOthers(RingStep::First)) + size;
         }
         layouts.push_back(std::move(layout));
     }

@@ -40,13 +40,12 @@ private:
 
 /// \brief A ring of VertexRings or InnerRings, as far as its points do not depend on where they come from.
 ///
-/// The points of a ring lie one behind the other.  First come two for its vertex, whose sums begin with
-/// face 0 and face 1; then the *blocks* of the faces, counter-clockwise.  The last face has its block
-/// before that of face 0, and face 0 has its own behind that of the last, too, so that the blocks
-/// from any of these on are one behind the other.
+/// A face numbers the faces around its vertex from itself on; its *turn* is the number of those that come before it in
+/// the vertex's own order, which all of them know.  The points of a ring are the *blocks* of the faces, counter-clockwise
+/// in the vertex's order, so that they are the same, and in the same places, whichever face makes them.
 struct Ring {
     RingFaceSizes faceSizes;
-    std::size_t firstPoints[2]; ///< by step: of all rings, that which is its vertex from face 0 on
+    std::size_t firstPoints[2]; ///< by step, among the points of all rings
     /// Whether the faces around the vertex and its neighbours are a piece of a regular lattice.
     bool isInLattice;
 
@@ -57,46 +56,56 @@ struct Ring {
     std::size_t GetBlockSize(int face, RingStep step) const {
         return GetNumOthers(step) + std::size_t(GetFaceSize(face));
     }
-    /// The points of the blocks from face 0 up to another one, or of all.
-    std::size_t GetOffset(int endFace, RingStep step) const {
+    /// Number of points of a block before the F-vertices of its face.
+    static constexpr std::size_t GetNumOthers(RingStep step) {
+        return step == RingStep::First ? 2 : 8;
+    }
+    std::size_t GetNumPoints(RingStep step) const {
+        return getNumPoints(0, GetNumFaces(), step);
+    }
+    /// A turn that was counted on by up to a round, or back by one.
+    int GetTurn(int turn) const {
+        return turn < 0 ? turn + GetNumFaces() : turn < GetNumFaces() ? turn : turn - GetNumFaces();
+    }
+    /// The face that comes first in the vertex's order.
+    int GetFirstFace(int turn) const { return turn == 0 ? 0 : GetNumFaces() - turn; }
+    /// rief Where in the ring a block begins.
+    ///
+    /// \param turn  of face 0
+    /// \param face  not before -1
+    std::size_t GetBlock(int turn, int face, RingStep step) const {
+        int const number = GetTurn(turn + face); // in the vertex's order
+        return getNumPoints(face - number, face, step);
+    }
+
+private:
+    // The points of the blocks of some faces, the first of which may be negative.
+    std::size_t getNumPoints(int beginFace, int endFace, RingStep step) const {
         if (faceSizes.AreSame()) {
-            return std::size_t(endFace) * GetBlockSize(0, step);
+            return std::size_t(endFace - beginFace) * GetBlockSize(0, step);
         }
         std::size_t size = 0;
-        for (int face = 0; face < endFace; ++face) {
-            size += GetBlockSize(face, step);
+        for (int face = beginFace; face < endFace; ++face) {
+            size += GetBlockSize(face < 0 ? face + GetNumFaces() : face, step);
         }
         return size;
     }
-    /// Number of points of a block before the F-vertices of its face.
-    static constexpr std::size_t GetNumOthers(RingStep step) {
-        return step == RingStep::First ? 1 : 9;
-    }
-    std::size_t GetNumPoints(RingStep step) const {
-        return 2 + GetBlockSize(-1, step) + GetBlockSize(0, step) + GetOffset(GetNumFaces(), step);
-    }
-    /// The point of its vertex, from face 0 or 1 on.
-    std::size_t GetCenter(int firstFace, RingStep step) const {
-        return firstPoints[std::size_t(step)] + std::size_t(firstFace);
-    }
-    /// The first point of the block of face -1, 0 or 1.
-    std::size_t GetBlock(int face, RingStep step) const {
-        std::size_t const first = GetCenter(2, step);
-        if (face < 0) {
-            return first;
-        }
-        return first + GetBlockSize(-1, step) + (face == 0 ? 0 : GetBlockSize(0, step));
-    }
+};
+
+/// Where the points of a ring lie, seen from one of its faces.
+struct RingPoints {
+    int first;  ///< of the ring
+    int count;  ///< of the ring
+    int offset; ///< in the ring, to the block of the face
 };
 
 /// \brief Layout of a ring, in vertices of the level that the step makes.
 ///
 /// Two sets of rings with equal layouts make equal children, except for the numbers of vertices.
 struct RingLayout {
-    /// Marks entries that are no vertices of the level, or that are not used.
+    /// Marks entries that are no vertices of the level.
     static constexpr int kNone = -1;
 
-    int center;
     std::vector<int> faceSizes;
     std::vector<int> verts; ///< from the block of face 0 to that of the last
     /// With masks that depend on those, by face: the flag of the neighbor where it begins, see FindQuadFlag.

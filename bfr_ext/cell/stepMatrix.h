@@ -148,7 +148,8 @@ private:
         }
     }
     template <typename NUMBER, typename END>
-    void fill(FarExt::internal::PatchRefinement const &step, std::vector<double> const &weights);
+    void fill(FarExt::internal::PatchRefinement const &step, std::vector<double> const &weights,
+              std::vector<std::uint32_t> const &numbers);
 
     std::uint32_t _numParentPoints = 0;
     std::uint32_t _numRows = 0;

@@ -28,15 +28,6 @@ bool hasFeatures(LimitPatch const &patch) {
                      FarExt::internal::kSharpBoundaryB) != patch.otherCorners.end();
 }
 
-// Copies so few points that the call of a function would take longer.
-template <typename REAL>
-void copyPoints(REAL const *begin, REAL const *end, REAL *to) {
-    constexpr std::size_t kCount = Lanes<REAL>::kCount;
-    for (; begin != end; begin += kCount, to += kCount) {
-        Lanes<REAL>::Load(begin).Store(to);
-    }
-}
-
 } // namespace
 
 // Writes the program of the rings of a patch.
@@ -265,7 +256,7 @@ bool VertexRings::Init(PatchCorners const &ofPatch, std::vector<int> const &corn
     return true;
 }
 
-// Writes the block of a face, and returns where the program goes on.
+// Writes the block of a face but for the vertex of the ring, and returns where the program goes on.
 template <std::size_t PADDED_SIZE, typename REAL>
 VertexRings::Number const *VertexRings::applyFace(Number const *program, REAL const *weights,
                                                   Lanes<REAL> const &center, REAL const *points,
@@ -295,7 +286,7 @@ VertexRings::Number const *VertexRings::applyFace(Number const *program, REAL co
         }
         sum = sum + ofPoints * weight;
     }
-    store(sum, 0);
+    store(sum, 1);
     auto const getVertex = [&](std::size_t place) {
         std::size_t const corner = place < faceSize ? place : place - faceSize;
         return corner == 0 ? center : load(verts[corner - 1]);
@@ -311,124 +302,68 @@ VertexRings::Number const *VertexRings::applyFace(Number const *program, REAL co
         if (2 * i == faceSize) {
             ofCorner = ofCorner + getVertex(corner + i) * mask[i];
         }
-        store(ofCorner, 1 + corner);
+        store(ofCorner, kNumOthers + corner);
     }
     return run;
 }
 
-// Writes the V-vertex of a ring, from one of its faces on.
-template <typename REAL>
-void VertexRings::applyCenter(Ring const &ring, int firstFace, REAL vertexWeight, REAL faceWeight,
-                              REAL const *center, REAL const *blocks, std::size_t paddedSize,
-                              REAL *result) {
-    REAL const *const end =
-        blocks + ring.GetOffset(ring.GetNumFaces(), RingStep::First) * paddedSize;
-    REAL const *const begin = blocks + ring.GetOffset(firstFace, RingStep::First) * paddedSize;
-    for (std::size_t first = 0; first < paddedSize; first += Lanes<REAL>::kCount) {
-        REAL const *block = begin;
-        int face = firstFace;
-        Lanes<REAL> sum = Lanes<REAL>::Load(block + paddedSize + first);
-        for (int i = 1; i < ring.GetNumFaces(); ++i) {
-            block += ring.GetBlockSize(face, RingStep::First) * paddedSize;
-            ++face;
-            if (block == end) {
-                block = blocks;
-                face = 0;
-            }
-            sum = sum + Lanes<REAL>::Load(block + paddedSize + first);
-        }
-        (Lanes<REAL>::Load(center + first) * vertexWeight + sum * faceWeight).Store(result + first);
-    }
-}
-
 template <std::size_t PADDED_SIZE, typename REAL>
-void VertexRings::apply(std::size_t number, REAL const *points, std::size_t paddedSize,
-                        REAL *result) const {
+void VertexRings::apply(std::size_t number, int turn, REAL const *points, std::size_t paddedSize,
+                        REAL *first, REAL *second) const {
     std::size_t const stride = PADDED_SIZE == 0 ? paddedSize : PADDED_SIZE;
     REAL const *const weights = getWeights(REAL());
     Number const *const program = getProgram() + _firsts[number];
     Ring const &ring = _rings[number];
-    REAL *const centers = result + ring.GetCenter(0, RingStep::First) * stride;
-    REAL *const copyOfLast = centers + 2 * stride;
-    REAL *const blocks = result + ring.GetBlock(0, RingStep::First) * stride;
-    REAL *last = blocks;
-    REAL *end = blocks;
-    for (std::size_t first = 0; first < stride; first += Lanes<REAL>::kCount) {
-        auto const center = Lanes<REAL>::Load(points + program[kVertex] * stride + first);
-        Lanes<REAL> sums[2] = {}; // of the F-vertices at the vertex, from face 0 and from face 1 on
+    int const numFaces = ring.GetNumFaces();
+    int const firstFace = ring.GetFirstFace(turn);
+    REAL *const begin = first + ring.GetBlock(turn, 0, RingStep::First) * stride;
+    for (std::size_t lane = 0; lane < stride; lane += Lanes<REAL>::kCount) {
+        auto const center = Lanes<REAL>::Load(points + program[kVertex] * stride + lane);
         Number const *face = program + kRingHeaderSize;
-        end = blocks;
-        for (std::size_t i = 0; i < program[kNumFaces]; ++i) {
-            last = end;
-            end += (1 + std::size_t(face[kFaceSize])) * stride;
-            face = applyFace<PADDED_SIZE>(face, weights, center, points + first, paddedSize,
-                                          last + first);
-            auto const ofFace = Lanes<REAL>::Load(last + stride + first);
-            sums[0] = i == 0 ? ofFace : sums[0] + ofFace;
-            sums[1] = i <= 1 ? ofFace : sums[1] + ofFace;
+        REAL *block = begin;
+        for (int i = 0; i < numFaces; ++i) {
+            block = i == firstFace ? first : block;
+            std::size_t const size = kNumOthers + std::size_t(face[kFaceSize]);
+            face = applyFace<PADDED_SIZE>(face, weights, center, points + lane, paddedSize,
+                                          block + lane);
+            block += size * stride;
         }
-        if (program[kNumFaces] > 1) {
-            sums[1] = sums[1] + Lanes<REAL>::Load(blocks + stride + first);
-        }
-        for (std::size_t i = 0; i < 2; ++i) {
-            (center * weights[program[kVertexWeight]] + sums[i] * weights[program[kFaceWeight]])
-                .Store(centers + i * stride + first);
-        }
+        // Calls function(block) for all blocks in the vertex's order.
+        auto const forEachBlock = [&](auto const &function) {
+            REAL *ofFace = first + lane;
+            for (int i = 0, ofRing = firstFace; i < numFaces; ++i) {
+                function(ofFace);
+                ofFace += ring.GetBlockSize(ofRing, RingStep::First) * stride;
+                ofRing = ofRing + 1 < numFaces ? ofRing + 1 : 0;
+            }
+        };
+        auto sum = Lanes<REAL>::Load(first + lane + kNumOthers * stride);
+        forEachBlock([&](REAL const *ofFace) {
+            if (ofFace != first + lane) {
+                sum = sum + Lanes<REAL>::Load(ofFace + kNumOthers * stride);
+            }
+        });
+        sum = center * weights[program[kVertexWeight]] + sum * weights[program[kFaceWeight]];
+        forEachBlock([&](REAL *ofFace) { sum.Store(ofFace); });
     }
-    copyPoints(last, end, copyOfLast);
-    copyPoints(blocks, blocks + ring.GetBlockSize(0, RingStep::First) * stride, end);
-}
-
-template <typename REAL>
-void VertexRings::applyFirst(std::size_t ring, REAL const *points, std::size_t paddedSize,
-                             REAL *result) const {
-    if (paddedSize == StepMatrix::kPadding) {
-        apply<StepMatrix::kPadding>(ring, points, paddedSize, result);
-    } else {
-        apply<0>(ring, points, paddedSize, result);
-    }
-}
-
-template <typename REAL>
-void VertexRings::applySecond(std::size_t ring, REAL const *points, std::size_t paddedSize,
-                              REAL *result) const {
-    REAL *block = result + GetBlock(int(ring), 0, RingStep::Second) * paddedSize;
-    for (int face = 0; face < _rings[ring].GetNumFaces(); ++face) {
-        applyFirstCenter(ring, face, points, result, paddedSize, block);
-        block += _rings[ring].GetBlockSize(face, RingStep::Second) * paddedSize;
-    }
-    _inner.Apply(_rings, ring, paddedSize, result);
-}
-
-template <typename REAL>
-void VertexRings::ApplyCenter(int ring, int firstFace, REAL const *points, REAL const *rings,
-                              std::size_t paddedSize, REAL *result) const {
-    auto const number = std::size_t(ring);
     if (_inner.IsUsed()) {
-        InnerRings::CopyCenter(_rings[number], firstFace, rings, paddedSize, result);
-    } else {
-        applyFirstCenter(number, firstFace, points, rings, paddedSize, result);
+        _inner.Apply<PADDED_SIZE>(ring, number, turn, paddedSize, first, second);
     }
 }
 
-// As of the first step.
 template <typename REAL>
-void VertexRings::applyFirstCenter(std::size_t ring, int firstFace, REAL const *points,
-                                   REAL const *rings, std::size_t paddedSize, REAL *result) const {
-    REAL const *const weights = getWeights(REAL());
-    Number const *const program = getProgram() + _firsts[ring];
-    applyCenter(_rings[ring], firstFace, weights[program[kVertexWeight]],
-                weights[program[kFaceWeight]], points + program[kVertex] * paddedSize,
-                rings + _rings[ring].GetBlock(0, RingStep::First) * paddedSize, paddedSize, result);
+void VertexRings::Apply(std::size_t ring, int turn, REAL const *points, std::size_t paddedSize,
+                        REAL *first, REAL *second) const {
+    if (paddedSize == StepMatrix::kPadding) {
+        apply<StepMatrix::kPadding>(ring, turn, points, paddedSize, first, second);
+    } else {
+        apply<0>(ring, turn, points, paddedSize, first, second);
+    }
 }
 
-template void VertexRings::applyFirst(std::size_t, float const *, std::size_t, float *) const;
-template void VertexRings::applySecond(std::size_t, float const *, std::size_t, float *) const;
-template void VertexRings::applyFirst(std::size_t, double const *, std::size_t, double *) const;
-template void VertexRings::applySecond(std::size_t, double const *, std::size_t, double *) const;
-template void VertexRings::ApplyCenter(int, int, float const *, float const *, std::size_t,
-                                       float *) const;
-template void VertexRings::ApplyCenter(int, int, double const *, double const *, std::size_t,
-                                       double *) const;
+template void VertexRings::Apply(std::size_t, int, float const *, std::size_t, float *,
+                                 float *) const;
+template void VertexRings::Apply(std::size_t, int, double const *, std::size_t, double *,
+                                 double *) const;
 
 } // namespace OpenSubdivHex::BfrExt::internal

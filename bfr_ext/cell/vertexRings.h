@@ -16,12 +16,13 @@ namespace OpenSubdivHex::BfrExt::internal {
 /// what the step makes of the faces around the vertex and of its neighbours.
 ///
 /// Each point is a sum that depends on the ring alone, and on neither the base face nor the numbers of its
-/// control points: an F-vertex begins with the vertex of its own corner, and the V-vertex of a neighbour
-/// with the vertex that has the ring.  So all faces at the vertex get the same points, to the bit.
+/// control points: an F-vertex begins with the vertex of its own corner, the V-vertex of a neighbour
+/// with the vertex that has the ring, and that of the vertex with the face that comes first in the vertex's order.  So
+/// all faces at the vertex get the same points, to the bit.
 ///
-/// The block of a face has the V-vertex of the neighbour where the face begins, and the face's F-vertices,
-/// from that at the vertex on.  Behind the points of all rings come those of InnerRings, where there are
-/// any.
+/// The block of a face has the V-vertex of the vertex, that of the neighbour where the face begins, and the face's
+/// F-vertices, from that at the vertex on.  Among the points of all rings those of InnerRings come last, where there
+/// are any.
 class VertexRings {
 public:
     /// \brief Finds the rings around corners of a patch, which say what face 0 is.
@@ -36,43 +37,34 @@ public:
     std::size_t GetNumPoints() const { return _numPoints; }
     /// The last step that made points.
     RingStep GetLastStep() const { return _inner.IsUsed() ? RingStep::Second : RingStep::First; }
-    /// As of the ring.
-    std::size_t GetCenter(int ring, int firstFace, RingStep step) const {
-        return _rings[std::size_t(ring)].GetCenter(firstFace, step);
-    }
-    std::size_t GetBlock(int ring, int face, RingStep step) const {
-        return _rings[std::size_t(ring)].GetBlock(face, step);
+    /// The vertex of a ring, as a point of the patch.
+    int GetVertex(std::size_t ring) const { return getProgram()[_firsts[ring] + kVertex]; }
+    /// Where the points of a ring lie among those of all rings, seen from a face.
+    RingPoints GetPoints(int ring, int turn, int face, RingStep step) const {
+        Ring const &ofVertex = _rings[std::size_t(ring)];
+        return {int(ofVertex.firstPoints[std::size_t(step)]), int(ofVertex.GetNumPoints(step)),
+                int(ofVertex.GetBlock(turn, face, step))};
     }
 
-    /// \brief Writes the points of all rings from those of the patch.
+    /// \brief Writes the points of a ring from those of the patch.
     ///
+    /// \param turn        of face 0
     /// \param points      of the patch, and behind them one whose numbers are 0
     /// \param paddedSize  numbers of a point, a multiple of StepMatrix::kPadding
+    /// \param first       the points of the first step
+    /// \param second      those of the second step, if GetLastStep() is this one
+    template <typename REAL>
+    void Apply(std::size_t ring, int turn, REAL const *points, std::size_t paddedSize, REAL *first,
+               REAL *second) const;
+    /// Writes the points of all rings, whose turns are 0.
     template <typename REAL>
     void Apply(REAL const *points, std::size_t paddedSize, REAL *result) const {
         for (std::size_t ring = 0; ring < _rings.size(); ++ring) {
-            applyFirst(ring, points, paddedSize, result);
-        }
-        for (std::size_t ring = 0; _inner.IsUsed() && ring < _rings.size(); ++ring) {
-            applySecond(ring, points, paddedSize, result);
-        }
-    }
-    /// Writes the points of one ring to where Apply() writes them.
-    template <typename REAL>
-    void ApplyRing(std::size_t ring, REAL const *points, std::size_t paddedSize,
-                   REAL *result) const {
-        applyFirst(ring, points, paddedSize, result);
-        if (_inner.IsUsed()) {
-            applySecond(ring, points, paddedSize, result);
+            std::size_t const(&firsts)[2] = _rings[ring].firstPoints;
+            Apply(ring, 0, points, paddedSize, result + firsts[0] * paddedSize,
+                  result + firsts[1] * paddedSize);
         }
     }
-    /// Writes the point of a ring's vertex, from any face on, as Apply() writes it from face 0 on, of the last
-    /// step.
-    ///
-    /// \param rings  what Apply() wrote
-    template <typename REAL>
-    void ApplyCenter(int ring, int firstFace, REAL const *points, REAL const *rings,
-                     std::size_t paddedSize, REAL *result) const;
 
 private:
     using Number = std::uint16_t;
@@ -94,6 +86,7 @@ private:
     // Points that are added up at once: what a run has less is filled up with zeros, since loops of different
     // lengths cost more than sums.
     static constexpr std::size_t kRunStep = 4;
+    static constexpr std::size_t kNumOthers = Ring::GetNumOthers(RingStep::First);
 
     class Builder;
     float const *getWeights(float /*precision*/) const {
@@ -109,21 +102,9 @@ private:
     static Number const *applyFace(Number const *program, REAL const *weights,
                                    Lanes<REAL> const &center, REAL const *points,
                                    std::size_t paddedSize, REAL *result);
-    template <typename REAL>
-    static void applyCenter(Ring const &ring, int firstFace, REAL vertexWeight, REAL faceWeight,
-                            REAL const *center, REAL const *blocks, std::size_t paddedSize,
-                            REAL *result);
-    template <typename REAL>
-    void applyFirstCenter(std::size_t ring, int firstFace, REAL const *points, REAL const *rings,
-                          std::size_t paddedSize, REAL *result) const;
-    template <typename REAL>
-    void applyFirst(std::size_t ring, REAL const *points, std::size_t paddedSize,
-                    REAL *result) const;
-    template <typename REAL>
-    void applySecond(std::size_t ring, REAL const *points, std::size_t paddedSize,
-                     REAL *result) const;
     template <std::size_t PADDED_SIZE, typename REAL>
-    void apply(std::size_t number, REAL const *points, std::size_t paddedSize, REAL *result) const;
+    void apply(std::size_t number, int turn, REAL const *points, std::size_t paddedSize,
+               REAL *first, REAL *second) const;
 
     std::size_t _numPoints = 0;
     std::vector<Ring> _rings;

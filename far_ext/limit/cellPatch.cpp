@@ -87,7 +87,7 @@ void GatherBaseCell(SurfaceFaces const &faces, Index face, Sdc::Options sdcOptio
 }
 
 CellPatch MakePlainBaseCell(std::vector<int> faceSizes, std::vector<Index> faceVerts, int numInner,
-                            int numPoints, bool hasSignature) {
+                            int numPoints) {
     auto const size = std::size_t(faceSizes[0]);
     auto const end = std::size_t(numPoints);
     CellPatch cell;
@@ -123,9 +123,6 @@ CellPatch MakePlainBaseCell(std::vector<int> faceSizes, std::vector<Index> faceV
     }
     patch.faceSizes = std::move(faceSizes);
     patch.faceVerts = std::move(faceVerts);
-    if (hasSignature) {
-        LimitPatchGatherer::AddSignature(patch);
-    }
     return cell;
 }
 
@@ -318,16 +315,25 @@ CellRefinement RefineCell(CellPatch const &cell, Sdc::Options sdcOptions,
     Refinement const &refinement = refined.refinement;
     CellRefinement result;
     result.children = CellRefiner(refinement, sdcOptions, schemeOptions.faceMask, cell).Refine();
-    std::vector<Index> verts;
+    std::vector<int> rowOfVert(std::size_t(refined.child.numVertices), -1);
     for (CellPatch const &child : result.children) {
-        verts.insert(verts.end(), child.patch.sources.begin(), child.patch.sources.end());
+        for (Index const vert : child.patch.sources) {
+            rowOfVert[std::size_t(vert)] = 0;
+        }
     }
-    SortUnique(verts);
+    std::vector<Index> verts;
+    for (Index vert = 0; vert < refined.child.numVertices; ++vert) {
+        if (rowOfVert[std::size_t(vert)] == 0) {
+            rowOfVert[std::size_t(vert)] = int(verts.size());
+            verts.push_back(vert);
+        }
+    }
     result.step = MakePatchStep(refinement, schemeOptions, interpolation, verts);
     for (CellPatch const &child : result.children) {
         std::vector<int> rows;
+        rows.reserve(child.patch.sources.size());
         for (Index const vert : child.patch.sources) {
-            rows.push_back(int(std::lower_bound(verts.begin(), verts.end(), vert) - verts.begin()));
+            rows.push_back(rowOfVert[std::size_t(vert)]);
         }
         result.rows.push_back(std::move(rows));
     }

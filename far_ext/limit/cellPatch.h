@@ -53,10 +53,9 @@ OPENSUBDIVHEX_API void GatherBaseCell(SurfaceFaces const &faces, Far::Index face
 ///
 /// \param faceSizes, faceVerts  of the patch, the base face first; at most 32,767 corners
 /// \param numInner              points all of whose faces are in the patch, the first ones
-/// \param hasSignature          whether the patch has its signature, without which it can only be refined
 OPENSUBDIVHEX_API CellPatch MakePlainBaseCell(std::vector<int> faceSizes,
                                               std::vector<Far::Index> faceVerts, int numInner,
-                                              int numPoints, bool hasSignature);
+                                              int numPoints);
 
 /// \brief Writes what the edges and vertices of a surface face are in its own eyes, which all faces that
 /// share one need to number it alike: its *turns*.

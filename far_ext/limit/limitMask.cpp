@@ -6,6 +6,7 @@
 #include "patchCycle.h"
 
 #include <cmath>
+#include <cstdint>
 #include <numeric>
 #include <optional>
 
@@ -545,6 +546,15 @@ LimitMask makeFreeBoundaryMask(Level const &level) {
 }
 
 } // namespace
+
+std::size_t LimitMaskFinder::Hash::operator()(std::vector<int> const &signature) const {
+    std::uint64_t hash = signature.size();
+    for (int const number : signature) {
+        hash = (hash ^ std::uint32_t(number)) * 0x9e3779b97f4a7c15;
+        hash ^= hash >> 29;
+    }
+    return std::size_t(hash);
+}
 
 auto LimitMaskFinder::Find(LimitPatch const &patch) -> MaskPointer {
     if (auto const found = _masks.find(patch.signature); found != _masks.end()) {

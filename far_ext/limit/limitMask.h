@@ -5,8 +5,8 @@
 #include "far_ext/vtr/refinementRules.h"
 #include "limitPatch.h"
 
-#include <map>
 #include <memory>
+#include <unordered_map>
 
 namespace OpenSubdivHex::FarExt::internal {
 
@@ -48,6 +48,7 @@ public:
     MaskPointer Find(LimitPatch const &patch);
 
     Sdc::Options GetSdcOptions() const { return _sdcOptions; }
+    HexSchemeOptions const &GetSchemeOptions() const { return _schemeOptions; }
     FaceMask GetFaceMask() const { return _schemeOptions.faceMask; }
 
     /// A patch, and the step that leads to the next.
@@ -65,7 +66,10 @@ private:
 
     Sdc::Options const _sdcOptions;
     HexSchemeOptions const _schemeOptions;
-    std::map<std::vector<int>, MaskPointer> _masks; ///< by signature
+    struct Hash {
+        std::size_t operator()(std::vector<int> const &signature) const;
+    };
+    std::unordered_map<std::vector<int>, MaskPointer, Hash> _masks; ///< by signature
 };
 
 /// \brief Finds limit masks of the centres of faces: in closed form, but for faces with sector

@@ -7,6 +7,7 @@
 #include "far_ext/vtr/refinementRows.h"
 #include "far_ext/vtr/sharpFeatures.h"
 
+#include <cstdint>
 #include <cstring>
 #include <iterator>
 
@@ -262,14 +263,20 @@ void LimitPatchGatherer::addFace(Index face, int local, bool isRing, LimitPatch 
         local = local < diagonalEnd ? kDiagonalStart : diagonalEnd;
         diagonalEnd = local == kDiagonalStart ? diagonalEnd : size - diagonalEnd;
     }
+    bool hasTags = false;
+    CornerTags::ForEachKind(
+        [&](auto const &tags) {
+            hasTags = hasTags || !FindCornerTags(tags, first, first + size).empty();
+        },
+        _level);
     Index const patchFirst = Index(patch.faceVerts.size());
     for (int i = 0; i < size; ++i) {
-        Index const corner = first + (local + i) % size;
+        Index const corner = first + (local + i < size ? local + i : local + i - size);
         _corners.push_back(corner);
         Index const vert = addVertex(corner, patch);
         patch.faceVerts.push_back(vert);
         // Only corners at the neighbours of vertex 0 matter of the faces further out.
-        if (isRing || vert < _numComplete) {
+        if (hasTags && (isRing || vert < _numComplete)) {
             CornerTags::ForEachKind(
                 [&](auto const &ofLevel, auto &ofPatch) {
                     for (auto tag : FindCornerTags(ofLevel, corner, corner + 1)) {
@@ -287,12 +294,13 @@ void LimitPatchGatherer::addFace(Index face, int local, bool isRing, LimitPatch 
     patch.diagonalSharpness.push_back(diagonal);
 }
 
-void LimitPatchGatherer::addEdge(Index corner, Index edge, LimitPatch &patch) {
-    Index const size = Index(patch.otherCorners.size());
-    Index const other = _edges.FindOrSet(edge, size);
-    bool const isComplete = std::min(findEndVertex(edge, 0), findEndVertex(edge, 1)) < _numComplete;
+void LimitPatchGatherer::addEdge(Index corner, Index nextCorner, LimitPatch &patch) {
+    Index const edge = _level.faceEdges[_corners[std::size_t(corner)]];
+    Index const other = _edges.FindOrSet(edge, corner);
+    bool const isComplete = std::min(patch.faceVerts[std::size_t(corner)],
+                                     patch.faceVerts[std::size_t(nextCorner)]) < _numComplete;
     patch.edgeSharpness.push_back(isComplete ? _level.GetEdgeSharpness(edge) : 0);
-    if (other != size) {
+    if (other != corner) {
         // Further out it does not matter which faces are joined: patches that differ in nothing else
         // are to be the same.
         patch.otherCorners.push_back(isComplete ? other : Index(kFreeBoundary));
@@ -425,7 +433,7 @@ void LimitPatchGatherer::addIrregularVertices(LimitPatch &patch) {
     }
 }
 
-void LimitPatchGatherer::AddSignature(LimitPatch &patch) {
+void LimitPatchGatherer::addSignature(LimitPatch &patch) {
     std::vector<int> &signature = patch.signature;
     // Most patches have no tags.
     constexpr std::size_t kNumSizes = 11;
@@ -478,7 +486,9 @@ void LimitPatchGatherer::AddSignature(LimitPatch &patch) {
         patch);
 }
 
+// Patches of a level that are gathered one after the other are of similar sizes.
 void LimitPatchGatherer::clear(LimitPatch &patch) {
+    std::size_t const numCorners = _corners.size();
     _numComplete = 0;
     _verts.Clear();
     _faces.Clear();
@@ -488,6 +498,9 @@ void LimitPatchGatherer::clear(LimitPatch &patch) {
     _ringFaces.clear();
     _ringEdges.clear();
     patch = LimitPatch();
+    patch.faceVerts.reserve(numCorners);
+    patch.otherCorners.reserve(numCorners);
+    patch.edgeSharpness.reserve(numCorners);
 }
 
 // The vertices whose faces are all there come first: the centres, for which the patch is made and
@@ -517,8 +530,13 @@ void LimitPatchGatherer::addNeighborhood(int numCenters, LimitPatch &patch) {
             }
         });
     }
-    for (Index corner = 0; corner < Index(_corners.size()); ++corner) {
-        addEdge(corner, _level.faceEdges[_corners[corner]], patch);
+    Index corner = 0;
+    for (int const size : patch.faceSizes) {
+        Index const last = corner + size - 1;
+        for (; corner < last; ++corner) {
+            addEdge(corner, corner + 1, patch);
+        }
+        addEdge(corner++, last + 1 - size, patch);
     }
     std::stable_sort(
         patch.sectorCorners.begin(), patch.sectorCorners.end(),
@@ -527,7 +545,6 @@ void LimitPatchGatherer::addNeighborhood(int numCenters, LimitPatch &patch) {
     addSharpVertices(patch);
     addSharpEnds(patch);
     addIrregularVertices(patch);
-    AddSignature(patch);
 }
 
 // Which of the edges of a fan leads to the first centre; numEdges where none does.
@@ -553,6 +570,7 @@ void LimitPatchGatherer::Gather(Index vert, LimitPatch &patch) {
     addVertex(_level.GetVertexCorner(_level.vertFirstFace[vert]), patch);
     orderFans(patch);
     addNeighborhood(1, patch);
+    addSignature(patch);
 }
 
 void LimitPatchGatherer::GatherFan(Index corner, LimitPatch &patch) {
@@ -561,6 +579,7 @@ void LimitPatchGatherer::GatherFan(Index corner, LimitPatch &patch) {
     addVertex(corner, patch);
     orderFans(patch);
     addNeighborhood(1, patch);
+    addSignature(patch);
 }
 
 int LimitPatchGatherer::GatherCell(Index face, int const *locals, int numCorners,
@@ -658,63 +677,40 @@ void PatchRefinement::ApplyRight(std::vector<double> const &right,
 
 namespace {
 
-// A row of a matrix that is being formed: the sum of what was added, by column.
-struct SparseRow {
-    SparseRow() { entries.reserve(kUsualSize); }
-
-    void Clear() { entries.clear(); }
-    void AddWithWeight(Index column, double weight) { entries.emplace_back(column, weight); }
-    void AddWithWeight(SparseRow const &row, double weight) {
-        for (auto const &[column, rowWeight] : row.entries) {
-            entries.emplace_back(column, weight * rowWeight);
-        }
-    }
-
-    // Room for the faces around a vertex of a few faces.
-    static constexpr std::size_t kUsualSize = 32;
-
-    std::vector<std::pair<Index, double>> entries;
-};
-
-// The vertices of a patch are the columns.
-struct Columns {
-    Index operator[](Index vert) const { return verts[std::size_t(vert)]; }
-
-    std::vector<Index> const &verts;
-};
-
 // Appends rows, their columns ascending, to a step.
 class RowAppender {
 public:
     explicit RowAppender(PatchRefinement &step)
         : _step(step), _sums(std::size_t(step.numParentVerts)),
-          _hasSum(std::size_t(step.numParentVerts)) {}
+          _hasSum(std::size_t(step.numParentVerts) / kWordBits + 1) {}
 
-    // Repeated entries of a column are summed in the order in which they were added.
-    void Append(SparseRow const &row) {
-        auto const first = std::ptrdiff_t(_step.verts.size());
-        for (auto const &[column, weight] : row.entries) {
-            auto const place = std::size_t(column);
-            if (_hasSum[place]) {
-                _sums[place] += weight;
-            } else {
-                _sums[place] = weight;
-                _hasSum[place] = true;
-                _step.verts.push_back(column);
+    // Adds to a column of the next row; sums are in the order in which these come.
+    void Add(Index column, double weight) {
+        auto const place = std::size_t(column);
+        std::uint64_t &word = _hasSum[place / kWordBits];
+        std::uint64_t const bit = std::uint64_t(1) << place % kWordBits;
+        _sums[place] = (word & bit) != 0 ? _sums[place] + weight : weight;
+        word |= bit;
+    }
+
+    void EndRow() {
+        for (std::size_t i = 0; i < _hasSum.size(); ++i) {
+            for (std::size_t place = i * kWordBits; _hasSum[i] != 0; ++place, _hasSum[i] >>= 1) {
+                if ((_hasSum[i] & 1) != 0) {
+                    _step.verts.push_back(int(place));
+                    _step.weights.push_back(_sums[place]);
+                }
             }
-        }
-        std::sort(_step.verts.begin() + first, _step.verts.end());
-        for (auto vert = _step.verts.begin() + first; vert != _step.verts.end(); ++vert) {
-            _step.weights.push_back(_sums[std::size_t(*vert)]);
-            _hasSum[std::size_t(*vert)] = false;
         }
         _step.firsts.push_back(int(_step.verts.size()));
     }
 
 private:
+    static constexpr std::size_t kWordBits = 64;
+
     PatchRefinement &_step;
     std::vector<double> _sums; // by column
-    std::vector<char> _hasSum;
+    std::vector<std::uint64_t> _hasSum;
 };
 
 // Around a V-vertex the children of edges take the place of faces: the first edge of a closed fan
@@ -736,21 +732,20 @@ std::vector<int> mapSides(Level const &pLevel, LimitPatch const &cPatch) {
 
 PatchRefinement MakePatchStep(Refinement const &refinement, HexSchemeOptions const &schemeOptions,
                               Interpolation interpolation, std::vector<Index> const &cVerts) {
-    std::vector<Index> wanted = cVerts;
-    SortUnique(wanted);
-    RefinementRows::Part const part = FindPart(refinement, schemeOptions, interpolation, wanted);
-    RefinementRows const rows(refinement, schemeOptions, interpolation, part);
-    std::vector<SparseRow> sparseRows(std::size_t(rows.GetNumRows()));
-    Interpolate<double>(rows, Columns{part.verts}, sparseRows);
-
+    std::shared_ptr<RefinementRules const> const rules =
+        GetRules(*refinement.parent, schemeOptions, interpolation);
     PatchRefinement step;
     step.numParentVerts = refinement.parent->numVertices;
+    step.firsts.reserve(cVerts.size() + 1);
     step.firsts.push_back(0);
-    std::vector<Index> const made = GetMadeVertices(refinement, part);
+    constexpr std::size_t kUsualSize = 16; // of rows
+    step.verts.reserve(cVerts.size() * kUsualSize);
+    step.weights.reserve(cVerts.size() * kUsualSize);
     RowAppender appender(step);
     for (Index cVert : cVerts) {
-        auto const place = std::lower_bound(made.begin(), made.end(), cVert);
-        appender.Append(sparseRows[std::size_t(place - made.begin())]);
+        ForEachParentWeight(refinement, *rules, cVert,
+                            [&](Index pVert, double weight) { appender.Add(pVert, weight); });
+        appender.EndRow();
     }
     return step;
 }

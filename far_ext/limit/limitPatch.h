@@ -76,14 +76,11 @@ public:
     void GatherFan(Index corner, LimitPatch &patch);
 
     /// \brief Gathers what the surface of a cell depends on: the faces around its corners and around
-    /// their neighbours, in one patch.  Its first vertices are those at the corners, in their order.
+    /// their neighbours, in one patch without a signature.  Its first vertices are those at the corners, in their order.
     ///
     /// \param locals  the corners, as places in the face, which is face 0 of the patch
     /// \return        where in the face it begins in the patch
     int GatherCell(Index face, int const *locals, int numCorners, LimitPatch &patch);
-
-    /// Adds the signature of a patch that has all else.
-    static void AddSignature(LimitPatch &patch);
 
 private:
     void clear(LimitPatch &patch);
@@ -101,11 +98,12 @@ private:
     void orderFans(LimitPatch &patch);
     int findFirstFace(VertexFan const &fan, int &firstSide);
     void addFace(Index face, int local, bool isRing, LimitPatch &patch);
-    void addEdge(Index corner, Index edge, LimitPatch &patch);
+    void addEdge(Index corner, Index nextCorner, LimitPatch &patch);
     void addTags(LimitPatch &patch);
     void addSharpVertices(LimitPatch &patch);
     void addSharpEnds(LimitPatch &patch);
     void addIrregularVertices(LimitPatch &patch);
+    static void addSignature(LimitPatch &patch);
     int countSteps(LimitPatch const &patch) const;
     bool hasIrregularities(LimitPatch const &patch) const;
 

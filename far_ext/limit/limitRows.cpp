@@ -46,7 +46,8 @@ public:
     explicit Finder(LimitRows const &rows)
         : _level(rows._level), _plainGatherer(rows._level),
           _gatherer(rows._level, rows._sdcOptions, rows._schemeOptions.faceMask),
-          _finder(rows._sdcOptions, rows._schemeOptions) {}
+          _ownFinder(rows._sdcOptions, rows._schemeOptions),
+          _finder(rows._maskFinder ? *rows._maskFinder : _ownFinder) {}
 
     /// Adds what a vertex has to a range that has nothing of it.
     void Add(Index vert, Range &range) {
@@ -123,7 +124,8 @@ private:
     PlainNeighborhood _neighborhood;
     LimitPatchGatherer _gatherer;
     LimitPatch _patch;
-    LimitMaskFinder _finder;
+    LimitMaskFinder _ownFinder;
+    LimitMaskFinder &_finder;
     std::unordered_map<std::string, std::shared_ptr<LimitMask const>> _plainMasks; // by key
     std::shared_ptr<LimitMask const> _isolated;
 };

@@ -68,6 +68,10 @@ public:
     LimitRows(Level const &level, Sdc::Options sdcOptions, HexSchemeOptions const &schemeOptions);
     ~LimitRows();
 
+    /// Has masks found by a finder with the same options, which remembers those of other levels.  Find() is for the calling
+    /// thread alone then.
+    void SetMaskFinder(LimitMaskFinder &finder) { _maskFinder = &finder; }
+
     /// Finds all masks, in parallel, or says for which vertex there is none: of those where
     /// kMaxFacesAtLimit is exceeded before anything else is done.
     CallStatus Find();
@@ -109,7 +113,8 @@ private:
     Level const &_level;
     Sdc::Options const _sdcOptions;
     HexSchemeOptions const _schemeOptions;
-    std::vector<Range> _ranges; ///< none before the first call of Find()
+    LimitMaskFinder *_maskFinder = nullptr; ///< null: one for each thread
+    std::vector<Range> _ranges;             ///< none before the first call of Find()
     std::shared_ptr<LimitMask const> _regularMask;
 };
 

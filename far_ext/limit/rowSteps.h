@@ -4,7 +4,7 @@
 
 #include "limitRows.h"
 
-#include "far_ext/vtr/refinementRules.h"
+#include "far_ext/vtr/refinementRows.h"
 
 #include <array>
 #include <map>
@@ -22,39 +22,6 @@ constexpr double kWeightTolerance = 1e-9;
 
 /// A LimitRow by vertex, in which a vertex comes once.
 using SteppedRow = std::map<Far::Index, LimitWeights>;
-
-/// \brief Calls function(vertex, weight) for the vertices of the parent that a vertex of the child is a
-/// sum of; a vertex may come more than once.
-///
-/// \param rules  of the step
-template <typename FUNCTION>
-void ForEachParentWeight(Refinement const &refinement, RefinementRules const &rules,
-                         Far::Index cVert, FUNCTION function) {
-    using Index = Far::Index;
-    Level const &parent = *refinement.parent;
-    auto const addFVertex = [&](Index corner, double factor) {
-        Index const face = parent.FindFaceOfCorner(corner);
-        Index const first = parent.faceFirstCorner[face];
-        FaceRule const rule = rules.GetFaceRule(face);
-        double const *const weights = rule.GetRow(corner - first);
-        for (int i = 0; i < rule.GetSize(); ++i) {
-            function(parent.faceVerts[first + i], factor * weights[i]);
-        }
-    };
-    if (cVert >= refinement.child->numVVertices) {
-        addFVertex(refinement.GetChildVertexCorner(cVert), 1);
-        return;
-    }
-    Index const pVert = refinement.GetVVertexParent(cVert);
-    VertexRule const ofVertex = rules.GetVertexRule(pVert);
-    for (int i = 0; i < ofVertex.numSources; ++i) {
-        function(ofVertex.sources[i], ofVertex.weights[i]);
-    }
-    Index const firstFace = parent.vertFirstFace[pVert];
-    for (Index k = firstFace; k < parent.vertFirstFace[pVert + 1]; ++k) {
-        addFVertex(parent.GetVertexCorner(k), ofVertex.GetFaceWeight(k - firstFace));
-    }
-}
 
 /// \brief The row of a vertex of level \p cLevel in terms of the vertices of \p level, one before it.
 OPENSUBDIVHEX_API SteppedRow StepRowBack(MeshLevels const &mesh,

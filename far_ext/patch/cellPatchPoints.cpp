@@ -83,9 +83,9 @@ void findBilinearPoints(CellPatch const &cell, std::vector<double> &rows) {
 
 } // namespace
 
-CallStatus FindCellPatchPoints(CellPatch const &cell, Sdc::Options sdcOptions,
-                               HexSchemeOptions const &schemeOptions, Interpolation interpolation,
-                               PatchAges const &ages, std::vector<double> &rows) {
+CallStatus FindCellPatchPoints(CellPatch const &cell, LimitMaskFinder &finder,
+                               Interpolation interpolation, PatchAges const &ages,
+                               std::vector<double> &rows) {
     if (interpolation == Interpolation::Varying) {
         findBilinearPoints(cell, rows);
         return CallStatus();
@@ -96,13 +96,14 @@ CallStatus FindCellPatchPoints(CellPatch const &cell, Sdc::Options sdcOptions,
     mesh.levels.resize(2);
     mesh.refinements.resize(1);
     BuildPatchLevel(cell.patch, mesh.levels[0]);
-    RefineHexagonally(mesh.levels[0], {sdcOptions, schemeOptions.faceMask}, true,
+    RefineHexagonally(mesh.levels[0], {finder.GetSdcOptions(), finder.GetFaceMask()}, true,
                       mesh.refinements[0], mesh.levels[1]);
     bool const isWhole = cell.kind == CellKind::Whole;
     assert(!isWhole || cell.locals[0] == 0);
     PatchCells const cells =
         isWhole ? PatchCells(mesh, 0, std::vector<Index>{0}) : PatchCells(mesh, 0, PatchCell{0, 0});
-    PatchBuilder builder(hierarchy, -1, sdcOptions, schemeOptions, cells);
+    PatchBuilder builder(hierarchy, -1, finder.GetSdcOptions(), finder.GetSchemeOptions(), cells);
+    builder.SetMaskFinder(finder);
     PatchAges ofVertices = {ages.steps,
                             std::vector<int>(std::size_t(mesh.levels[0].numVertices), 0)};
     for (std::size_t i = 0; i < cell.corners.size(); ++i) {

@@ -14,12 +14,12 @@ namespace OpenSubdivHex::FarExt::internal {
 ///
 /// Varying data, which have kinks along edges of all levels, are bilinear between the corners of a patch.
 ///
+/// \param finder  of limits, with the options of the steps
 /// \param ages  steps of the cell behind its base face, and the ages of its corners (CellPatch::corners),
 ///              in the place of those of vertices
 /// \param rows  kNumPatchPoints rows for each patch, each with a weight for each vertex
 /// \return      a failure where the cell has no limit at a corner
-OPENSUBDIVHEX_API CallStatus FindCellPatchPoints(CellPatch const &cell, Sdc::Options sdcOptions,
-                                                 HexSchemeOptions const &schemeOptions,
+OPENSUBDIVHEX_API CallStatus FindCellPatchPoints(CellPatch const &cell, LimitMaskFinder &finder,
                                                  Interpolation interpolation, PatchAges const &ages,
                                                  std::vector<double> &rows);
 

@@ -78,7 +78,11 @@ public:
           _rows(_level, builder._sdcOptions, builder._schemeOptions),
           _faceMasks(_level, builder._sdcOptions, _toLimit),
           _childFaceMasks(*_toChild.child, builder._sdcOptions, _toLimit),
-          _rules(GetRules(_level, builder._schemeOptions, Interpolation::Vertex)) {}
+          _rules(GetRules(_level, builder._schemeOptions, Interpolation::Vertex)) {
+        if (builder._maskFinder) {
+            _rows.SetMaskFinder(*builder._maskFinder);
+        }
+    }
 
     /// Finds the limits at the corners of cells.
     CallStatus FindLimits();

@@ -5,6 +5,8 @@
 #include "patchCells.h"
 #include "patchConstants.h"
 
+#include "far_ext/limit/limitMask.h"
+
 #include <memory>
 #include <optional>
 #include <utility>
@@ -53,6 +55,9 @@ public:
     /// Takes the ages of the only level that has cells from here, not from the numbering of levels.
     void SetAges(PatchAges ages) { _ages = std::move(ages); }
 
+    /// Has limits found by a finder with the same options, on the calling thread alone.
+    void SetMaskFinder(LimitMaskFinder &finder) { _maskFinder = &finder; }
+
     /// Finds all limits that points are made of, and numbers the points.
     CallStatus Build();
 
@@ -79,6 +84,7 @@ private:
     PatchCells const &_cells;
     PatchConstants const _constants;
     std::optional<PatchAges> _ages;
+    LimitMaskFinder *_maskFinder = nullptr;
     std::vector<std::unique_ptr<LevelBuilder>> _levels;
     std::vector<VertexPoint> _vertexPoints;
     std::vector<char> _isInSeveralLevels; // by vertex: then its tangents are the limit's

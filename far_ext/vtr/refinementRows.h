@@ -133,6 +133,45 @@ private:
     std::vector<LocalIndex> _partVertFaceLocals;
 };
 
+/// \brief Calls function(vertex, weight) for the vertices of the parent that a vertex of the child of a hexagonal
+/// refinement is a sum of; a vertex may come more than once.
+///
+/// \param rules  of the refinement
+template <typename FUNCTION>
+void ForEachParentWeight(Refinement const &refinement, RefinementRules const &rules,
+                         Far::Index cVert, FUNCTION function) {
+    using Index = Far::Index;
+    Level const &parent = *refinement.parent;
+    auto const addFVertex = [&](Index face, int local, double factor) {
+        Index const *const verts = parent.faceVerts.data() + parent.faceFirstCorner[face];
+        FaceRule const rule = rules.GetFaceRule(face);
+        double const *const weights = rule.GetRow(local);
+        for (int i = 0; i < rule.GetSize(); ++i) {
+            if (weights[i] > 0) {
+                function(verts[i], factor * weights[i]);
+            }
+        }
+    };
+    if (cVert >= refinement.child->numVVertices) {
+        Index const corner = refinement.GetChildVertexCorner(cVert);
+        Index const face = parent.FindFaceOfCorner(corner);
+        addFVertex(face, corner - parent.faceFirstCorner[face], 1);
+        return;
+    }
+    Index const pVert = refinement.GetVVertexParent(cVert);
+    VertexRule const ofVertex = rules.GetVertexRule(pVert);
+    for (int i = 0; i < ofVertex.numSources; ++i) {
+        function(ofVertex.sources[i], ofVertex.weights[i]);
+    }
+    if (ofVertex.HasFaces()) {
+        Index const first = parent.vertFirstFace[pVert];
+        for (Index k = first; k < parent.vertFirstFace[pVert + 1]; ++k) {
+            addFVertex(parent.vertFaces[k], parent.vertFaceLocals[k],
+                       ofVertex.GetFaceWeight(k - first));
+        }
+    }
+}
+
 /// The faces and V-vertices that make \p wanted vertices of the child, which ascend, and all that
 /// these depend on in the parent.
 RefinementRows::Part FindPart(Refinement const &refinement, HexSchemeOptions schemeOptions,

@@ -195,73 +195,77 @@ struct SharpnessLayer {
     bool IsSharp(float sharpness) const { return sharpness >= upper; }
 };
 
-// Adds the corners with masks of their own in a sector of one face: a hexagon, or two halves.
-void addOneFaceCorners(Level const &level, FanItem const *begin, FanItem const *end, float weight,
+// Adds the corners with masks of their own of a face, or half of one, in a sector of one face.
+void addOneFaceCorners(Level const &level, FanItem const &item, float weight,
                        std::vector<SectorCorner> &result) {
     constexpr int kHalfFace[4] = {0, 1, 2, 3};
     auto const add = [&](Index corner, SectorCorner::Kind kind) {
         result.push_back({corner, 1, weight, kind});
     };
-    for (FanItem const *item = begin; item != end; ++item) {
-        if (!item->isFace) {
-            continue;
-        }
-        if (!item->isHalf) {
-            add(item->corner, SectorCorner::kAtOne);
-            add(level.GetNextCorner(item->face, item->corner), SectorCorner::kBehindOne);
-            add(level.GetPrevCorner(item->face, item->corner), SectorCorner::kBeforeOne);
-            continue;
-        }
-        Index const first = level.faceFirstCorner[item->face];
-        auto const &places = item->half < 0 ? kHalfFace : kHexagonHalves[item->half];
-        bool const isStart = item->corner == first + places[0];
-        add(first + places[isStart ? 3 : 2], SectorCorner::kBesideOne);
-        add(first + places[isStart ? 2 : 3], SectorCorner::kFarFromOne);
+    if (!item.isHalf) {
+        add(item.corner, SectorCorner::kAtOne);
+        add(level.GetNextCorner(item.face, item.corner), SectorCorner::kBehindOne);
+        add(level.GetPrevCorner(item.face, item.corner), SectorCorner::kBeforeOne);
+        return;
     }
+    Index const first = level.faceFirstCorner[item.face];
+    auto const &places = item.half < 0 ? kHalfFace : kHexagonHalves[item.half];
+    bool const isStart = item.corner == first + places[0];
+    add(first + places[isStart ? 3 : 2], SectorCorner::kBesideOne);
+    add(first + places[isStart ? 2 : 3], SectorCorner::kFarFromOne);
 }
 
 // Adds the corners of wide sectors between two edges of a fan that are sharp in the layer; and those of
 // sectors of one face, where these have a share.
-void addSectorCorners(Level const &level, SharpnessLayer layer, float oneFaceShare, FanItems &fan,
-                      std::vector<SectorCorner> &result) {
-    std::vector<FanItem> &items = fan.items;
-    auto const isSharpInLayer = [&](FanItem const &item) { return layer.IsSharp(item.sharpness); };
-    auto start = std::find_if(items.begin(), items.end(), isSharpInLayer);
-    if (fan.isClosed && start != items.end()) {
+void addSectorCorners(Level const &level, SharpnessLayer layer, float oneFaceShare,
+                      FanItems const &fan, std::vector<SectorCorner> &result) {
+    std::size_t const numItems = fan.items.size();
+    auto const at = [&](std::size_t i) -> FanItem const & {
+        return fan.items[i < numItems ? i : i - numItems];
+    };
+    auto const findSharp = [&](std::size_t begin, std::size_t end) {
+        while (begin < end && !layer.IsSharp(at(begin).sharpness)) {
+            ++begin;
+        }
+        return begin;
+    };
+    std::size_t start = findSharp(0, numItems);
+    std::size_t behind = numItems;
+    if (fan.isClosed && start < numItems) {
         // One edge bounds no sector, even if other fans have sharp edges, too.
-        if (std::none_of(start + 1, items.end(), isSharpInLayer)) {
+        if (findSharp(start + 1, numItems) == numItems) {
             return;
         }
-        // All around, from a sharp edge back to it.
-        std::rotate(items.begin(), start, items.end());
-        items.push_back(items.front());
-        start = items.begin();
+        behind = start + numItems + 1; // all around, from a sharp edge back to it
     }
-    while (start != items.end()) {
-        auto const end = std::find_if(start + 1, items.end(), isSharpInLayer);
-        if (end == items.end()) {
+    while (start < behind) {
+        std::size_t const end = findSharp(start + 1, behind);
+        if (end == behind) {
             return;
         }
         float size = 0;
-        for (auto item = start; item != end; ++item) {
-            if (item->isFace) {
-                size += item->isHalf ? 0.5f : 1.0f;
+        for (std::size_t i = start; i < end; ++i) {
+            if (at(i).isFace) {
+                size += at(i).isHalf ? 0.5f : 1.0f;
             }
         }
         Index lastCorner = Far::INDEX_INVALID;
-        for (auto item = start; item != end && size >= kMinShrunkSector; ++item) {
+        for (std::size_t i = start; i < end && size >= kMinShrunkSector; ++i) {
+            FanItem const &item = at(i);
             // The halves beside a diagonal that is less sharp are one corner.
-            if (!item->isFace || item->corner == lastCorner || level.IsHalfFace(item->face)) {
+            if (!item.isFace || item.corner == lastCorner || level.IsHalfFace(item.face)) {
                 continue;
             }
-            lastCorner = item->corner;
-            float const lower = std::max(layer.lower, level.GetDiagonalSharpness(item->face));
+            lastCorner = item.corner;
+            float const lower = std::max(layer.lower, level.GetDiagonalSharpness(item.face));
             if (lower < layer.upper) {
-                result.push_back({item->corner, size, layer.upper - lower, SectorCorner::kInWide});
+                result.push_back({item.corner, size, layer.upper - lower, SectorCorner::kInWide});
             }
         }
-        if (size == 1 && oneFaceShare > 0) {
-            addOneFaceCorners(level, &*start, &*start + (end - start), oneFaceShare, result);
+        for (std::size_t i = start; i < end && size == 1 && oneFaceShare > 0; ++i) {
+            if (at(i).isFace) {
+                addOneFaceCorners(level, at(i), oneFaceShare, result);
+            }
         }
         start = end;
     }
@@ -288,6 +292,7 @@ private:
     bool const _hasOneFaceMasks;
     // Results at a vertex, in memory that is used again.
     FanItems _fan;
+    std::vector<FanItems> _fans;
     SharpEdges _edges;
     std::vector<float> _childSharpness;
     std::vector<float> _layers;
@@ -334,8 +339,12 @@ void SharpMaskFinder::AddSectorCorners(Index vert, std::vector<SectorCorner> &re
     }
     // For each fan, because a sector may lie between two ends of a fan on the same line.
     _layers.clear();
-    ForEachFanItems(_level, vert, _fan, [this](FanItems const &fan) {
-        for (FanItem const &item : fan.items) {
+    std::size_t numFans = 0;
+    ForEachFan(_level, vert, [&](VertexFan const &fan) {
+        _fans.resize(std::max(_fans.size(), ++numFans));
+        FanItems &items = _fans[numFans - 1];
+        GatherFanItems(_level, fan, items);
+        for (FanItem const &item : items.items) {
             if (isSharp(item)) {
                 _layers.push_back(std::min(1.0f, item.sharpness));
             }
@@ -348,9 +357,9 @@ void SharpMaskFinder::AddSectorCorners(Index vert, std::vector<SectorCorner> &re
         if (_layers[i] > lower) {
             SharpnessLayer const layer = {lower, _layers[i]};
             float const oneFaceShare = findOneFaceShare(vert, layer);
-            ForEachFanItems(_level, vert, _fan, [&](FanItems &fan) {
-                addSectorCorners(_level, layer, oneFaceShare, fan, result);
-            });
+            for (std::size_t fan = 0; fan < numFans; ++fan) {
+                addSectorCorners(_level, layer, oneFaceShare, _fans[fan], result);
+            }
             lower = layer.upper;
         }
     }

@@ -3,12 +3,14 @@
 // Streams of patches, against surfaces evaluated one by one.
 #include "cellFixture.h"
 #include "streamFixture.h"
+#include "surfaceCase.h"
 #include "surfaceFixture.h"
 
 #include "bfr_ext/view.h"
 #include "regression/far_ext/referenceMatch.h"
 #include "regression/shapes/featureShapes.h"
 #include "regression/shapes/flatShapes.h"
+#include "regression/shapes/meshOperations.h"
 #include "regression/shapes/shapeDescriptor.h"
 #include "regression/shapes/torus.h"
 
@@ -105,7 +107,107 @@ void expectSurfaces(Shape const &shape, ReferenceMask mask, int numLevels, doubl
     EXPECT_EQ(numPatches, collection.patches.size());
 }
 
+/// Irregular triangles or their dual, with creases, holes, and a channel with seams: more rings than a thread remembers.
+Shape makeLargeShape(bool isDual) {
+    Shape shape = MakeTorus(36, 24, TorusFaces::IrregularTriangles);
+    if (isDual) {
+        shape = MakeDual("dual", shape);
+    }
+    std::vector<int> seams;
+    int firstCorner = 0;
+    for (int face = 0; face < shape.GetNumFaces(); ++face) {
+        int const verts[2] = {shape.faceVertices[std::size_t(firstCorner)],
+                              shape.faceVertices[std::size_t(firstCorner) + 1]};
+        firstCorner += shape.faceSizes[std::size_t(face)];
+        if (face % 90 < 4) {
+            shape.creaseVertexPairs.insert(shape.creaseVertexPairs.end(), verts, verts + 2);
+            shape.creaseSharpness.push_back(face % 90 == 0 ? 1.5F : 10.0F);
+        } else if (face % 90 < 8) {
+            seams.insert(seams.end(), verts, verts + 2);
+        } else if (face % 90 == 50) {
+            shape.holeFaces.push_back(face);
+        }
+    }
+    shape.fvarChannels = {MakeSeamChannel(shape, seams)};
+    return shape;
+}
+
+/// Expects that patches of any levels have the bits of surfaces that are evaluated one by one, in any order on any number
+/// of threads.
+///
+/// \param size  numbers of a point
+template <typename REAL>
+void expectBitsOfSurfaces(Shape const &shape, SurfaceCase const &surfaceCase, int size) {
+    auto const refiner = CreateSurfaceRefiner(shape, surfaceCase, 0, getEdgeOnly());
+    auto const factory = SurfaceFactory::Create(*refiner);
+    FarExt::TopologyLevel const &base =
+        refiner->GetLevel(refiner->GetHexSchemeOptions().GetSurfaceLevel());
+    std::mt19937 random(5);
+    auto const makeNumbers = [&](int count) {
+        std::vector<REAL> numbers(static_cast<std::size_t>(size * count));
+        std::generate(numbers.begin(), numbers.end(), [&] { return REAL(random() % 1000) / 7; });
+        return numbers;
+    };
+    std::vector<REAL> const meshPoints = makeNumbers(base.GetNumVertices());
+    std::vector<REAL> const others = makeNumbers(base.GetNumVertices());
+    std::vector<REAL> const channel = makeNumbers(base.GetNumFVarValues(0));
+    using Stream = PatchStream<REAL>;
+    std::vector<typename Stream::Values> const values = {{others.data(), size},
+                                                         {channel.data(), size, 0}};
+    RandomPatchLevels const levels(base, 3, 5);
+    Stream const stream(*factory, levels.Get(), typename Stream::Options().SetDerivatives(true));
+    std::vector<int> faces(std::size_t(factory->GetNumFaces()));
+    std::iota(faces.begin(), faces.end(), 0);
+    std::mutex mutex;
+    auto const expectEqual = [&](Surface<REAL> const &surface, std::vector<REAL> const &from,
+                                 LevelTessellation const &tessellation,
+                                 std::array<REAL const *, 3> const &found) {
+        std::vector<REAL> control(std::size_t(size * surface.GetNumControlPoints()));
+        surface.GatherControlPoints(from.data(), size, control.data(), size);
+        std::vector<REAL> expected[3];
+        for (std::vector<REAL> &numbers : expected) {
+            numbers.resize(std::size_t(size * tessellation.GetNumCoords()));
+        }
+        surface.Evaluate(tessellation, control.data(), size, expected[0].data(), expected[1].data(),
+                         expected[2].data(), size);
+        std::lock_guard<std::mutex> const lock(mutex);
+        for (std::size_t i = 0; i < 3 && found[i]; ++i) {
+            EXPECT_TRUE(std::equal(expected[i].begin(), expected[i].end(), found[i]))
+                << "kind " << i;
+        }
+    };
+    for (int const numThreads : {1, 3}) {
+        ThreadsScope const threads(numThreads);
+        std::atomic<int> numPatches(0);
+        ASSERT_TRUE(stream.Run(
+            meshPoints.data(), size, values, faces, [&](typename Stream::Patch const &patch) {
+                ++numPatches;
+                Surface<REAL> surface;
+                factory->InitVertexSurface(patch.face, &surface);
+                expectEqual(surface, meshPoints, patch.tessellation,
+                            {patch.points, patch.du, patch.dv});
+                factory->InitVaryingSurface(patch.face, &surface);
+                expectEqual(surface, others, patch.tessellation,
+                            {patch.values[0], nullptr, nullptr});
+                factory->InitFaceVaryingSurface(patch.face, &surface);
+                expectEqual(surface, channel, patch.tessellation,
+                            {patch.values[1], nullptr, nullptr});
+                return !testing::Test::HasFailure();
+            }));
+        EXPECT_GT(numPatches, 800);
+        std::shuffle(faces.begin(), faces.end(), random);
+    }
+}
+
 } // namespace
+
+TEST(PatchStreamTest, SharesRingsWithoutLossOfBits) {
+    expectBitsOfSurfaces<float>(makeLargeShape(false), kPlainCases[2], 3);
+    expectBitsOfSurfaces<double>(makeLargeShape(false), kPlainCases[0], 7);
+    expectBitsOfSurfaces<double>(makeLargeShape(true), kPlainCases[2], 3);
+    expectBitsOfSurfaces<float>(makeLargeShape(true), kPlainCases[0], 5);
+    expectBitsOfSurfaces<float>(makeLargeShape(false), kTruncateCases[2], 3);
+}
 
 // More vertices than a thread remembers.
 TEST(PatchStreamTest, HandsOutVerticesOfManyFaces) {

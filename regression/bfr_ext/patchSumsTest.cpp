@@ -20,7 +20,7 @@ using BfrExt::internal::kNumPatchPoints;
 using BfrExt::internal::PatchBlock;
 using BfrExt::internal::PatchPlace;
 using BfrExt::internal::PatchRow;
-using BfrExt::internal::PatchWeights;
+using BfrExt::internal::PatchSums;
 using BfrExt::internal::RegisterAllocator;
 
 using Weights = std::array<double, 4>;
@@ -81,33 +81,36 @@ public:
     RandomBlock(int numColumns, std::mt19937 &random) : _columns(kNumPoints) {
         std::iota(_columns.begin(), _columns.end(), 0);
         std::shuffle(_columns.begin(), _columns.end(), random);
+        int const paddedSize = PatchBlock<REAL>::GetPaddedSize(numColumns);
         _columns.resize(std::size_t(numColumns));
-        auto const paddedSize = std::size_t(PatchBlock<REAL>::GetPaddedSize(numColumns));
+        _columns.resize(std::size_t(paddedSize), _columns[0]);
         std::uniform_real_distribution<double> uniform(-1, 1);
-        _weights.resize(kNumPatchPoints * paddedSize);
-        for (std::size_t row = 0; row < kNumPatchPoints; ++row) {
-            for (std::size_t i = 0; i < _columns.size(); ++i) {
-                _weights[row * paddedSize + i] = REAL(uniform(random) / numColumns);
+        _weights.resize(std::size_t(kNumPatchPoints * paddedSize));
+        for (int row = 0; row < kNumPatchPoints; ++row) {
+            for (int i = 0; i < numColumns; ++i) {
+                _weights[PatchBlock<REAL>::GetPlace(row, i)] = REAL(uniform(random) / numColumns);
             }
         }
     }
 
     PatchBlock<REAL> Get() const {
-        return {_weights.data(), _columns.data(), int(_columns.size()), getLast()};
+        return {_weights.data(), _columns.data(), int(_columns.size())};
     }
     /// No more than those that the columns name: what lies behind them must not be read.
-    std::size_t GetNumPoints() const { return std::size_t(getLast()) + 1; }
+    std::size_t GetNumPoints() const {
+        return std::size_t(*std::max_element(_columns.begin(), _columns.end())) + 1;
+    }
 
     /// One number of the points of the patch.
     std::vector<double> GetPatchPoints(std::vector<REAL> const &points, std::size_t stride,
                                        std::size_t number) const {
-        std::size_t const paddedSize = _weights.size() / kNumPatchPoints;
         std::vector<double> result(kNumPatchPoints);
-        for (std::size_t row = 0; row < kNumPatchPoints; ++row) {
-            for (std::size_t i = 0; i < _columns.size(); ++i) {
+        for (int row = 0; row < kNumPatchPoints; ++row) {
+            for (int i = 0; i < int(_columns.size()); ++i) {
+                auto const point = std::size_t(_columns[std::size_t(i)]);
                 result[std::size_t(PatchRow::kPoints[row])] +=
-                    double(_weights[row * paddedSize + i]) *
-                    double(points[std::size_t(_columns[i]) * stride + number]);
+                    double(_weights[PatchBlock<REAL>::GetPlace(row, i)]) *
+                    double(points[point * stride + number]);
             }
         }
         // The first point inside of each corner is given by what it has more than the second.
@@ -118,8 +121,6 @@ public:
     }
 
 private:
-    int getLast() const { return *std::max_element(_columns.begin(), _columns.end()); }
-
     std::vector<int> _columns;
     std::vector<REAL, RegisterAllocator<REAL>> _weights;
 };
@@ -154,8 +155,9 @@ void expectSums(KERNEL const &kernel, double tolerance) {
                 for (std::size_t i = 0; i < 6; ++i) {
                     pointers[i] = results[i].data();
                 }
-                kernel(PatchWeights<NUM_DERIVATIVES, REAL>(place), block.Get(), points.data(),
-                       int(size), std::ptrdiff_t(stride), pointers);
+                PatchBlock<REAL> const all = block.Get();
+                kernel(PatchSums<REAL>{place, NUM_DERIVATIVES, all, points.data(), int(size),
+                                       std::ptrdiff_t(stride), pointers});
                 for (std::size_t k = 0; k < size; ++k) {
                     std::array<double, 6> const expected =
                         evaluate(place, block.GetPatchPoints(points, stride, k));
@@ -178,13 +180,14 @@ void expectSums(KERNEL const &kernel, double tolerance) {
 template <int NUM_DERIVATIVES, typename REAL>
 void expectSumsOfKernels(double tolerance) {
     using namespace BfrExt::internal;
+    using Kernel = void (*)(PatchSums<REAL> const &);
     {
         SCOPED_TRACE("portable");
-        expectSums<NUM_DERIVATIVES, REAL>(SumUpPatchPortable<NUM_DERIVATIVES, REAL>, tolerance);
+        expectSums<NUM_DERIVATIVES, REAL>(Kernel(SumUpPatchPortable), tolerance);
     }
     {
         SCOPED_TRACE("of the machine");
-        expectSums<NUM_DERIVATIVES, REAL>(SumUpPatch<NUM_DERIVATIVES, REAL>, tolerance);
+        expectSums<NUM_DERIVATIVES, REAL>(Kernel(SumUpPatch), tolerance);
     }
 }
 

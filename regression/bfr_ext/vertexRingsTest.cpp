@@ -27,6 +27,7 @@ using BfrExt::internal::PlainFaceType;
 using BfrExt::internal::RingCell;
 using BfrExt::internal::RingItem;
 using BfrExt::internal::RingPlaces;
+using BfrExt::internal::RingSources;
 using BfrExt::internal::RingStep;
 using BfrExt::internal::RingValues;
 using BfrExt::internal::StepMatrix;
@@ -55,16 +56,32 @@ std::vector<double> pick(std::vector<double> const &points, std::size_t stride,
     return result;
 }
 
-/// Overload for values of rings, by point of a cell's type or by point that its step makes.
-std::vector<double> pickCell(RingPlaces const &places, RingValues<double> &values,
+/// Overload for points of rings, padded, by point of a cell's type or by point that its step makes.
+std::vector<double> pickCell(RingPlaces const &places, double const *points,
                              std::vector<int> const &indices) {
     std::vector<int> ofType(indices.size());
     for (std::size_t column = 0; column < indices.size(); ++column) {
         ofType[std::size_t(places.GetColumns()[column])] = indices[column];
     }
-    std::size_t const stride = values.GetPaddedSize();
+    std::size_t const stride = StepMatrix::GetPaddedSize(kSize);
     std::size_t const last = std::size_t(*std::max_element(indices.begin(), indices.end()));
-    return pick({values.GetPoints(), values.GetPoints() + (last + 1) * stride}, stride, ofType);
+    return pick({points, points + (last + 1) * stride}, stride, ofType);
+}
+
+/// Points without gaps, with what they are filled up with, and behind them a point of zeros.
+std::vector<double> pad(std::vector<double> const &points) {
+    std::vector<double> result;
+    for (std::size_t i = 0; i < points.size(); i += kSize) {
+        result.insert(result.end(), &points[i], &points[i] + kSize);
+        result.resize(result.size() + StepMatrix::GetPaddedSize(kSize) - kSize);
+    }
+    result.resize(result.size() + StepMatrix::GetPaddedSize(kSize));
+    return result;
+}
+
+RingSources<double> getSources(std::vector<double> const &points, std::size_t numPoints,
+                               int const *indices) {
+    return {points.data(), kSize, kSize, numPoints, indices};
 }
 
 /// Points one behind the other, in order.
@@ -157,8 +174,10 @@ private:
         FaceRings const &face = plain.GetRings();
         CellType const &type = plain.Get();
         RingValues<double> values;
-        values.Set(face.GetRings(), std::size_t(type.GetNumPoints()), nullptr, points.data(), kSize,
-                   kSize);
+        values.Set(face.GetRings(), &turns[std::size_t(type.GetNumCorners())],
+                   getSources(points, std::size_t(type.GetNumPoints()), nullptr));
+        std::vector<double> unturned(face.GetRings().GetNumPoints() * values.GetPaddedSize());
+        face.GetRings().Apply(pad(points).data(), values.GetPaddedSize(), unturned.data());
         std::vector<int> indices;
         for (std::size_t child = 0; child < type.GetChildren().size(); ++child) {
             RingCell const &cell = face.GetChild(child);
@@ -168,11 +187,15 @@ private:
             expectAlike(cell, ofChild);
             std::vector<double> const expected = stepTo(type, child, points);
             indices.resize(cell.GetPoints().GetColumns().size());
-            face.FindChildPoints(child, indices.data());
-            expectNear(pickCell(cell.GetPoints(), values, indices), expected);
-            indices.resize(cell.GetColumns().size());
-            face.FindChildIndices(child, indices.data());
-            expectNear(pickCell(cell.GetPlaces(), values, indices),
+            face.FindChildIndices(
+                child, cell.GetPoints(),
+                [&](int ring, int ofRing) {
+                    return face.GetRings().GetPoints(ring, 0, ofRing, RingStep::First);
+                },
+                indices.data());
+            expectNear(pickCell(cell.GetPoints(), unturned.data(), indices), expected);
+            values.FindChildIndices(face, child, indices);
+            expectNear(pickCell(cell.GetPlaces(), values.GetPoints(), indices),
                        cell.IsInner() ? step(ofChild, expected) : expected);
         }
         int const numEdges = type.GetNumCorners();
@@ -215,16 +238,25 @@ private:
         }
         ASSERT_EQ(cell, item.rings->cell);
         std::vector<int> indices(cell->GetColumns().size());
-        face.FindLongEdgeIndices(edge, item.isReversed, indices.data());
-        std::vector<double> const ofFace = pickCell(cell->GetPlaces(), values, indices);
+        double const *const ofRings = values.GetPoints();
+        face.FindLongEdgeIndices(
+            edge, item.isReversed,
+            [&](int ring, int ofRing) { return values.GetPointsOfRing(ring, ofRing); },
+            indices.data());
+        std::vector<double> const ofFace = pickCell(cell->GetPlaces(), ofRings, indices);
+        // From the face on that is left of the edge.
+        int const numEdges = type.GetNumCorners();
+        int const start = turns[std::size_t(numEdges + edge)];
+        int const end = turns[std::size_t(numEdges + (edge + 1) % numEdges)];
+        int const ownTurns[2] = {item.isReversed ? end + 1 : start,
+                                 item.isReversed ? start - 1 : end};
         RingValues<double> ownValues;
-        ownValues.Set(item.rings->rings, item.points.size(), item.points.data(), points.data(),
-                      kSize, kSize);
-        RingStep const last = cell->GetLastStep();
+        ownValues.Set(item.rings->rings, ownTurns,
+                      getSources(points, item.points.size(), item.points.data()));
+        double const *const own = ownValues.GetPoints();
         cell->GetPlaces().FindIndices(
-            item.rings->rings.GetCenter(0, 0, last),
-            [&](int ring) { return item.rings->rings.GetBlock(ring, 0, last); }, indices.data());
-        EXPECT_EQ(ofFace, pickCell(cell->GetPlaces(), ownValues, indices)) << "edge " << edge;
+            [&](int ring) { return ownValues.GetPointsOfRing(ring, 0); }, indices.data());
+        EXPECT_EQ(ofFace, pickCell(cell->GetPlaces(), own, indices)) << "edge " << edge;
         CellType const &longEdge = *item.type->GetChildren()[0].type;
         expectAlike(*cell, longEdge);
         std::vector<double> const expected =
@@ -244,14 +276,13 @@ private:
             return;
         }
         ASSERT_EQ(cell, item.rings->cell);
-        int const numFaces = face.GetRings().GetRings()[std::size_t(vert)].GetNumFaces();
         std::vector<double> ofFace(kSize);
-        values.EvaluateVertex(*cell, vert, (numFaces - turns[place]) % numFaces, ofFace.data());
+        values.EvaluateVertex(*cell, vert, ofFace.data());
         RingValues<double> ownValues;
-        ownValues.Set(item.rings->rings, item.points.size(), item.points.data(), points.data(),
-                      kSize, kSize);
+        ownValues.Set(item.rings->rings, nullptr,
+                      getSources(points, item.points.size(), item.points.data()));
         std::vector<double> own(kSize);
-        ownValues.EvaluateVertex(*cell, 0, 0, own.data());
+        ownValues.EvaluateVertex(*cell, 0, own.data());
         EXPECT_EQ(ofFace, own) << "vertex " << vert;
         std::vector<double> expected(kSize);
         std::vector<double> const &weights = type.GetCornerPoints()[std::size_t(vert)];
