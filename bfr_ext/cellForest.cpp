@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cellForest.h"
 
-#include "stream/forestData.h"
-
 #include "far_ext/vtr/level.h"
 #include "far_ext/vtr/parallel.h"
 
@@ -15,26 +13,34 @@ namespace OpenSubdivHex::BfrExt {
 
 using FarExt::internal::Level;
 
-internal::ForestData::ForestData(FarExt::SurfaceFaces const &ofMesh) : faces(ofMesh) {
-    trees.reserve(std::size_t(faces.GetNumFaces()));
-    isMatched.resize(std::size_t(faces.GetNumFaces()));
-    for (Index face = 0; face < faces.GetNumFaces(); ++face) {
-        trees.emplace_back(faces.GetShape(face));
+struct CellForest::Data {
+    // No face is refined.
+    explicit Data(FarExt::SurfaceFaces const &ofMesh)
+        : faces(ofMesh), isMatched(std::size_t(ofMesh.GetNumFaces())),
+          edges(std::size_t(ofMesh.GetNumEdges())), polylines(edges),
+          firstPoints(edges.size() + 1, ofMesh.GetLevel().numVertices) {
+        trees.reserve(isMatched.size());
+        for (Index face = 0; face < faces.GetNumFaces(); ++face) {
+            trees.emplace_back(faces.GetShape(face));
+        }
     }
-    edges.resize(std::size_t(faces.GetNumEdges()));
-    polylines = edges;
-    firstPoints.assign(polylines.size() + 1, faces.GetLevel().numVertices);
-}
+
+    FarExt::SurfaceFaces faces;
+    std::vector<CellTree> trees;
+    std::vector<char> isMatched;     // by face; where it is not known, too, it is false
+    std::vector<Polyline> edges;     // what was set
+    std::vector<Polyline> polylines; // the same with the points of faces
+    std::vector<Number> firstPoints; // by edge; then their end
+};
 
 CellForest::CellForest(FarExt::TopologyRefiner const &refiner)
-    : _data(std::make_unique<internal::ForestData>(FarExt::SurfaceFaces(
+    : _data(std::make_unique<Data>(FarExt::SurfaceFaces(
           refiner.GetLevel(refiner.GetHexSchemeOptions().GetSurfaceLevel()).GetLevel()))) {}
 
-CellForest::CellForest(CellForest const &other)
-    : _data(std::make_unique<internal::ForestData>(*other._data)) {}
+CellForest::CellForest(CellForest const &other) : _data(std::make_unique<Data>(*other._data)) {}
 
 CellForest &CellForest::operator=(CellForest const &other) {
-    _data = std::make_unique<internal::ForestData>(*other._data);
+    _data = std::make_unique<Data>(*other._data);
     return *this;
 }
 
@@ -42,18 +48,20 @@ CellForest::CellForest(CellForest &&other) noexcept = default;
 CellForest &CellForest::operator=(CellForest &&other) noexcept = default;
 CellForest::~CellForest() = default;
 
-int CellForest::GetNumFaces() const { return _data->GetNumFaces(); }
+FarExt::SurfaceFaces const &CellForest::GetFaces() const { return _data->faces; }
 
 void CellForest::SetTree(Index face, CellTree tree) {
     _data->trees[std::size_t(face)] = std::move(tree);
     _data->isMatched[std::size_t(face)] = false;
 }
 
-CellTree const &CellForest::GetTree(Index face) const { return _data->GetTree(face); }
+CellTree const &CellForest::GetTree(Index face) const { return _data->trees[std::size_t(face)]; }
 
 void CellForest::SetEdge(Index edge, Polyline polyline) {
     _data->edges[std::size_t(edge)] = std::move(polyline);
 }
+
+Polyline const &CellForest::GetEdge(Index edge) const { return _data->edges[std::size_t(edge)]; }
 
 Polyline const &CellForest::GetPolyline(Index edge) const {
     return _data->polylines[std::size_t(edge)];
@@ -66,10 +74,10 @@ CellForest::Number CellForest::GetFirstEdgePoint(Index edge) const {
 }
 
 void CellForest::MatchEdges() {
-    internal::ForestData &data = *_data;
+    Data &data = *_data;
     FarExt::internal::ParallelFor(GetNumFaces(), [&](Index face) {
         data.isMatched[std::size_t(face)] =
-            data.GetTree(face).GetFaceShape() == data.faces.GetShape(face);
+            data.trees[std::size_t(face)].GetFaceShape() == data.faces.GetShape(face);
     });
     // The second face of an edge runs it backwards.
     FarExt::internal::ParallelFor(Index(data.edges.size()), [&](Index edge) {
@@ -80,7 +88,7 @@ void CellForest::MatchEdges() {
             if (face == Far::INDEX_INVALID || !data.isMatched[std::size_t(face)]) {
                 continue;
             }
-            Polyline own = data.GetTree(face).GetEdgePolyline(local);
+            Polyline own = data.trees[std::size_t(face)].GetEdgePolyline(local);
             if (side == 1 && own.GetNumPoints() > 0) {
                 own = own.GetReversed();
             }
@@ -165,8 +173,8 @@ std::vector<CellForest::Index> CellForest::FindChangedFaces(CellForest const &pr
         isAlike ? GetNumFaces() : 0, [] { return Keys(); },
         [&](Keys &keys, Index begin, Index end) {
             for (Index face = begin; face < end; ++face) {
-                _data->GetKey(face, keys.own);
-                previous._data->GetKey(face, keys.previous);
+                GetTessellationKey(face, keys.own);
+                previous.GetTessellationKey(face, keys.previous);
                 isChanged[std::size_t(face)] = keys.own != keys.previous ? 1 : 0;
             }
         },
@@ -180,15 +188,15 @@ std::vector<CellForest::Index> CellForest::FindChangedFaces(CellForest const &pr
     return faces;
 }
 
-void internal::ForestData::GetKey(Index face, std::vector<int> &key) const {
+void CellForest::GetTessellationKey(Index face, std::vector<int> &key) const {
     CellTree const &tree = GetTree(face);
     key = {tree.GetFaceSize(), tree.GetFaceShape().isHalf ? 1 : 0};
     for (int cell = 0; cell < tree.GetNumCells(); ++cell) {
         key.push_back(tree.GetFirstChild(cell));
     }
     for (int local = 0; local < tree.GetFaceSize(); ++local) {
-        auto const [edge, isReversed] = faces.GetEdge(face, local);
-        std::vector<Polyline::Place> const &places = polylines[std::size_t(edge)].GetPlaces();
+        auto const [edge, isReversed] = _data->faces.GetEdge(face, local);
+        std::vector<Polyline::Place> const &places = GetPolyline(edge).GetPlaces();
         key.push_back(-1 - int(places.size()));
         if (isReversed) {
             std::transform(places.rbegin(), places.rend(), std::back_inserter(key),

@@ -4,6 +4,7 @@
 
 #include "levelTessellation.h"
 
+#include "far_ext/surfaceFaces.h"
 #include "far_ext/topologyRefiner.h"
 
 #include <cstdint>
@@ -11,10 +12,6 @@
 #include <vector>
 
 namespace OpenSubdivHex::BfrExt {
-
-namespace internal {
-struct ForestData;
-}
 
 /// \brief A watertight tessellation of a mesh: a tree of cells for each base face, and a polyline for each edge.
 ///
@@ -56,8 +53,10 @@ public:
     CellForest &operator=(CellForest &&other) noexcept;
     ~CellForest();
 
+    /// Base faces and edges.
+    FarExt::SurfaceFaces const &GetFaces() const;
     /// Base faces.
-    int GetNumFaces() const;
+    int GetNumFaces() const { return GetFaces().GetNumFaces(); }
     /// Sets the tree of a face, for as many vertices as the face has.
     void SetTree(Index face, CellTree tree);
     /// The tree of a face.
@@ -65,6 +64,8 @@ public:
 
     /// Sets points that an edge has in addition to those of its faces' cells, in the direction of the edge.
     void SetEdge(Index edge, Polyline polyline);
+    /// What SetEdge() was given last.
+    Polyline const &GetEdge(Index edge) const;
     /// \brief Finds the polylines of all edges: each gets the points that the trees of its faces have on the edge.
     ///
     /// Call it after SetTree() and SetEdge().  A tree for another number of vertices than its face has is ignored.
@@ -80,6 +81,9 @@ public:
     LevelTessellation
     GetTessellation(Index face,
                     LevelTessellation::Options options = LevelTessellation::Options()) const;
+    /// \brief Writes numbers that tell the tessellation of a face, after MatchEdges(): faces with the same numbers have the
+    /// same tessellation.
+    void GetTessellationKey(Index face, std::vector<int> &key) const;
     /// \brief Finds the faces whose tessellations, GetTessellation(), differ from those in another forest.
     ///
     /// Where positions are the same, the points and facets of all other faces are the same, to the bit: a renderer keeps
@@ -98,13 +102,10 @@ public:
     /// \return  how many they are; 0, with nothing written, where GetNumBoundaryPoints() is above 2^31 - 1
     int GetBoundaryPoints(Index face, int points[]) const;
 
-    /// Its data, for the classes of this library.
-    internal::ForestData const &GetData() const { return *_data; }
-    /// Its data, for the classes of this library.
-    internal::ForestData &GetData() { return *_data; }
-
 private:
-    std::unique_ptr<internal::ForestData> _data;
+    struct Data;
+
+    std::unique_ptr<Data> _data;
 };
 
 } // namespace OpenSubdivHex::BfrExt

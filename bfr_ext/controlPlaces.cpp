@@ -3,10 +3,10 @@
 // Places on the control mesh, as places of surfaces.
 #include "surfaceFactory.h"
 
+#include "far_ext/vtr/faceCoords.h"
 #include "far_ext/vtr/report.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <string>
 #include <vector>
@@ -20,24 +20,17 @@ using FarExt::StatusCode;
 
 namespace {
 
-/// A point, or a difference of two, in the plane of a face.
-using PlanePoint = std::array<double, 2>;
+using FarExt::internal::BasePolygon;
 
-PlanePoint subtractPlanePoints(PlanePoint const &a, PlanePoint const &b) {
-    return {a[0] - b[0], a[1] - b[1]};
-}
+/// A point in the plane of a face, from its centre.
+using PlanePoint = BasePolygon::Pair;
 
-PlanePoint mixPlanePoints(PlanePoint const &a, PlanePoint const &b, double t) {
-    return {a[0] + t * (b[0] - a[0]), a[1] + t * (b[1] - a[1])};
-}
-
-/// A triangle, whose first corner is its apex.
+/// Triangles with an apex, in which a place has weights of the second and the third corner.
 struct PlaneTriangle {
-    /// The weights of the second and the third corner that make a point.
     PlanePoint FindWeights(PlanePoint const &point) const {
-        PlanePoint const a = subtractPlanePoints(second, apex);
-        PlanePoint const b = subtractPlanePoints(third, apex);
-        PlanePoint const p = subtractPlanePoints(point, apex);
+        PlanePoint const a = {second[0] - apex[0], second[1] - apex[1]};
+        PlanePoint const b = {third[0] - apex[0], third[1] - apex[1]};
+        PlanePoint const p = {point[0] - apex[0], point[1] - apex[1]};
         double const area = a[0] * b[1] - a[1] * b[0];
         return {(p[0] * b[1] - p[1] * b[0]) / area, (a[0] * p[1] - a[1] * p[0]) / area};
     }
@@ -54,24 +47,6 @@ struct PlaneTriangle {
     PlanePoint third;
 };
 
-PlanePoint getPlaneVertex(Parameterization const &face, int vertex) {
-    PlanePoint point;
-    face.GetVertexCoord(vertex, point.data());
-    face.ConvertToPlane(point.data(), point.data());
-    return point;
-}
-
-/// The centre of a face, of half a polygon the middle of its long edge.
-PlanePoint getPlaneCenter(Parameterization const &face) {
-    if (face.GetFaceShape().isHalf) {
-        return mixPlanePoints(getPlaneVertex(face, 0), getPlaneVertex(face, 1), 0.5);
-    }
-    PlanePoint point;
-    face.GetCenterCoord(point.data());
-    face.ConvertToPlane(point.data(), point.data());
-    return point;
-}
-
 /// \brief A place of a face that is truncated: in the triangle that a corner of its F-face and the next one make with the
 /// centre or with a vertex of the face.
 struct TruncatedPlace {
@@ -80,18 +55,21 @@ struct TruncatedPlace {
     PlanePoint weights; ///< of the corner and the next one
 };
 
-TruncatedPlace findTruncatedPlace(Parameterization const &face, PlanePoint const &point) {
+TruncatedPlace findTruncatedPlace(BasePolygon const &face, PlanePoint const &point) {
+    int const size = face.GetSize();
     // Truncation cuts edges at a third of their length.
-    constexpr double kCut = 1.0 / 3;
-    int const size = face.GetFaceSize();
+    auto const getCut = [&](int vertex, int other) -> PlanePoint {
+        PlanePoint const a = face.GetCorner(vertex);
+        PlanePoint const b = face.GetCorner(other % size);
+        return {(2 * a[0] + b[0]) / 3, (2 * a[1] + b[1]) / 3};
+    };
     std::vector<PlanePoint> corners; // of the F-face
     for (int i = 0; i < size; ++i) {
-        PlanePoint const vertex = getPlaneVertex(face, i);
-        corners.push_back(
-            mixPlanePoints(vertex, getPlaneVertex(face, (i + size - 1) % size), kCut));
-        corners.push_back(mixPlanePoints(vertex, getPlaneVertex(face, (i + 1) % size), kCut));
-        PlaneTriangle const cutOff = {vertex, corners.end()[-2], corners.end()[-1]};
-        PlanePoint const weights = cutOff.FindWeights(point);
+        corners.push_back(getCut(i, i + size - 1));
+        corners.push_back(getCut(i, i + 1));
+        PlanePoint const weights =
+            PlaneTriangle{face.GetCorner(i), corners.end()[-2], corners.end()[-1]}.FindWeights(
+                point);
         if (weights[0] + weights[1] < 1) {
             return {2 * i, true, weights};
         }
@@ -99,9 +77,9 @@ TruncatedPlace findTruncatedPlace(Parameterization const &face, PlanePoint const
     TruncatedPlace best = {0, false, {}};
     double bestWeight = 0;
     for (int i = 0; i < 2 * size; ++i) {
-        PlaneTriangle const sector = {getPlaneCenter(face), corners[std::size_t(i)],
-                                      corners[std::size_t((i + 1) % (2 * size))]};
-        PlanePoint const weights = sector.FindWeights(point);
+        PlanePoint const weights =
+            PlaneTriangle{{}, corners[std::size_t(i)], corners[std::size_t((i + 1) % (2 * size))]}
+                .FindWeights(point);
         double const least = std::min(weights[0], weights[1]);
         if (i == 0 || least > bestWeight) {
             bestWeight = least;
@@ -140,11 +118,13 @@ bool SurfaceFactory::FindSurfacePlace(Index controlFace, REAL const controlUv[2]
         std::copy_n(controlUv, 2, uv);
         return true;
     }
-    Parameterization const ofControl(
-        FarExt::FaceShape(control.GetFaceVertices(controlFace).size()));
-    PlanePoint point = {controlUv[0], controlUv[1]};
-    ofControl.ConvertToPlane(point.data(), point.data());
-    TruncatedPlace const place = findTruncatedPlace(ofControl, point);
+    FarExt::FaceShape const shape(control.GetFaceVertices(controlFace).size());
+    BasePolygon const ofControl(shape);
+    PlanePoint point =
+        FarExt::internal::FindInPlane(Parameterization(shape), {controlUv[0], controlUv[1]}).coords;
+    PlanePoint const center = ofControl.GetCenter();
+    TruncatedPlace const place =
+        findTruncatedPlace(ofControl, {point[0] - center[0], point[1] - center[1]});
 
     // The surface face on this side of the corner's edge, or beyond it, where the edge runs the other way.
     FarExt::SurfaceFaces::Side side = _faces.GetSideOfPlace(controlFace, place.corner);
@@ -153,10 +133,10 @@ bool SurfaceFactory::FindSurfacePlace(Index controlFace, REAL const controlUv[2]
         FarExt::SurfaceFaces::Side const first = _faces.GetSide(edge, 0);
         side = first.face == side.face ? _faces.GetSide(edge, 1) : first;
     }
-    Parameterization const ofSurface = GetFaceParameterization(side.face);
-    int const size = ofSurface.GetFaceSize();
-    PlaneTriangle triangle = {getPlaneCenter(ofSurface), getPlaneVertex(ofSurface, side.local),
-                              getPlaneVertex(ofSurface, (side.local + 1) % size)};
+    BasePolygon const ofSurface(_faces.GetShape(side.face));
+    int const size = ofSurface.GetSize();
+    PlaneTriangle triangle = {
+        {}, ofSurface.GetCorner(side.local), ofSurface.GetCorner((side.local + 1) % size)};
     if (place.isAtVertex) {
         std::swap(triangle.second, triangle.third);
         // The vertex is the centre of its face, unless it is kept.
@@ -164,12 +144,13 @@ bool SurfaceFactory::FindSurfacePlace(Index controlFace, REAL const controlUv[2]
             control.GetVertexChildVertex(control.GetFaceVertices(controlFace)[place.corner / 2]);
         for (int i = 0; i < size; ++i) {
             if (_faces.GetVertex(side.face, i) == kept) {
-                triangle.apex = getPlaneVertex(ofSurface, i);
+                triangle.apex = ofSurface.GetCorner(i);
             }
         }
     }
     point = triangle.Apply(place.weights);
-    ofSurface.ConvertFromPlane(point.data(), point.data());
+    point = {point[0] + ofSurface.GetCenter()[0], point[1] + ofSurface.GetCenter()[1]};
+    GetFaceParameterization(side.face).ConvertFromPlane(point.data(), point.data());
     *face = side.face;
     uv[0] = REAL(point[0]);
     uv[1] = REAL(point[1]);

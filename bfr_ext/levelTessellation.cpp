@@ -114,10 +114,29 @@ bool LevelTessellation::IsUniform() const {
                        [&](int level) { return level == _data->levels[0]; });
 }
 
-int LevelTessellation::GetFacetSizes(int sizes[]) const {
-    for (std::size_t i = 0; i + 1 < _data->firstFacetIndices.size(); ++i) {
-        sizes[i] = _data->firstFacetIndices[i + 1] - _data->firstFacetIndices[i];
+namespace {
+
+// Calls function(begin, end) with the indices of each facet.
+template <typename FUNCTION>
+void forEachFacet(TessellationData const &data, FUNCTION const &function) {
+    for (std::size_t i = 0; i + 1 < data.firstFacetIndices.size(); ++i) {
+        function(data.facetIndices.data() + data.firstFacetIndices[i],
+                 data.facetIndices.data() + data.firstFacetIndices[i + 1]);
     }
+}
+
+template <typename FUNCTION>
+void transform(TessellationData const &data, int facetTuples[], FUNCTION const &function) {
+    forEachFacet(data, [&](int const *begin, int const *end) {
+        std::transform(facetTuples, facetTuples + (end - begin), facetTuples, function);
+        facetTuples += data.facetSize == 0 ? end - begin : data.facetStride;
+    });
+}
+
+} // namespace
+
+int LevelTessellation::GetFacetSizes(int sizes[]) const {
+    forEachFacet(*_data, [&](int const *begin, int const *end) { *sizes++ = int(end - begin); });
     return GetNumFacets();
 }
 
@@ -127,30 +146,15 @@ int LevelTessellation::GetFacetLevels(int levels[]) const {
 }
 
 int LevelTessellation::GetFacets(int facetTuples[]) const {
-    for (std::size_t i = 0; i + 1 < _data->firstFacetIndices.size(); ++i) {
-        int const *const begin = _data->facetIndices.data() + _data->firstFacetIndices[i];
-        int const *const end = _data->facetIndices.data() + _data->firstFacetIndices[i + 1];
-        std::copy(begin, end, facetTuples);
-        std::fill(facetTuples + (end - begin),
-                  facetTuples + std::max(_data->facetSize, int(end - begin)),
-                  OpenSubdiv::Far::INDEX_INVALID);
-        facetTuples += _data->facetSize == 0 ? int(end - begin) : _data->facetStride;
-    }
+    forEachFacet(*_data, [&](int const *begin, int const *end) {
+        int *const endOfFacet = std::copy(begin, end, facetTuples);
+        facetTuples += _data->facetSize == 0 ? end - begin : _data->facetStride;
+        if (end - begin < _data->facetSize) {
+            *endOfFacet = OpenSubdiv::Far::INDEX_INVALID; // a triangle among quads
+        }
+    });
     return GetNumFacets();
 }
-
-namespace {
-
-template <typename FUNCTION>
-void transform(TessellationData const &data, int facetTuples[], FUNCTION const &function) {
-    for (std::size_t i = 0; i + 1 < data.firstFacetIndices.size(); ++i) {
-        int const size = data.firstFacetIndices[i + 1] - data.firstFacetIndices[i];
-        std::transform(facetTuples, facetTuples + size, facetTuples, function);
-        facetTuples += data.facetSize == 0 ? size : data.facetStride;
-    }
-}
-
-} // namespace
 
 void LevelTessellation::TransformFacetCoordIndices(int facetTuples[], int commonOffset) const {
     transform(*_data, facetTuples, [=](int index) { return index + commonOffset; });

@@ -2,8 +2,7 @@
 #include "patchStream.h"
 
 #include "cell/faceEvaluator.h"
-#include "stream/forestData.h"
-#include "stream/patchPlans.h"
+#include "cell/patchPlans.h"
 
 #include "far_ext/executor.h"
 #include "far_ext/stencil/interpolationMode.h"
@@ -12,8 +11,8 @@
 
 #include <algorithm>
 #include <atomic>
+#include <map>
 #include <mutex>
-#include <optional>
 #include <string>
 #include <unordered_set>
 
@@ -47,264 +46,84 @@ private:
 
 } // namespace
 
-/// \brief The data of a stream, with all that it does.
-template <typename REAL>
-class PatchStream<REAL>::Data {
+/// The data of a stream, with all that does not depend on the precision of points.
+class internal::StreamData {
 public:
-    /// \param forest  null: levels
-    Data(SurfaceFactory const &factory, PatchLevels levels, CellForest const *forest,
-         Options const &options)
-        : _factory(factory), _levels(std::move(levels)), _forest(forest), _options(options),
-          _plans(std::make_unique<internal::PatchPlans>(
-              internal::PlanOptions{options.GetTessellationOptions(), options.HasDerivatives()},
-              options.GetMaxMemory())) {}
+    using Index = Far::Index;
+    using Options = PatchTessellations::Options;
 
-    SurfaceFactory const &GetFactory() const { return _factory; }
-    PatchLevels const &GetLevels() const { return _levels; }
-    CellForest const *GetForest() const { return _forest; }
-    Options const &GetOptions() const { return _options; }
+    StreamData(SurfaceFactory const &ofMesh, PatchLevels ofFaces, CellForest const *ofTrees,
+               Options const &ofStream)
+        : factory(ofMesh), levels(std::move(ofFaces)), forest(ofTrees), options(ofStream),
+          plans(options.GetTessellationOptions(), options.HasDerivatives(),
+                options.GetMaxMemory()) {}
 
-    bool Run(REAL const meshPoints[], PointDescriptor const &meshPointDesc,
-             std::vector<Values> const &values, AskedFaces const &faces, Sink const &sink,
-             CallStatus *status) const;
-    CallStatus CheckRange(Index beginFace, Index endFace) const;
-    CallStatus CheckList(std::vector<Index> const &faces) const;
-    bool RunTessellations(TessellationSink const &sink, CallStatus *status) const;
-    int GetNumSections(Index face) const;
-    LevelTessellation MakeTessellation(Index face) const;
-    LevelTessellation MakeTessellation(Index face, int section) const;
-    SectionPolygons GetSectionPolygons(Index face) const;
+    void GetLevels(Index face, FaceLevels &result) const;
+    LevelTessellation MakeWhole(Index face) const;
+    std::unique_ptr<FaceSections const> MakeSections(Index face) const;
+    template <typename MAKE>
+    bool Run(AskedFaces const &faces, MAKE const &makeWorker, CallStatus *status) const;
+
+    SurfaceFactory const &factory;
+    PatchLevels const levels;
+    CellForest const *const forest; ///< null: levels
+    Options const options;
+    PatchPlans mutable plans;
 
 private:
-    class TessellationFinder;
-    class Worker;
     struct Batch;
 
-    CallStatus checkFaces(AskedFaces const &faces, bool *arePlansKept) const;
-    CallStatus checkFace(Index face, internal::FaceLevels &levels) const;
-    CallStatus checkLevels(Index face, internal::FaceLevels const &levels) const;
-    CallStatus checkTree(Index face) const;
-    void getLevels(Index face, internal::FaceLevels &levels) const;
-    bool isCut(Index face, internal::FaceLevels const &levels) const;
-    std::unique_ptr<internal::FaceSections const> makeSections(Index face) const;
+    CallStatus checkFaces(AskedFaces const &faces, bool &arePlansKept) const;
+    CallStatus checkFace(Index face, FaceLevels &ofFace) const;
     Index takeFaces(AskedFaces const &faces, Index next, Batch &batch) const;
     template <typename MAKE>
     bool runWorkers(AskedFaces const &faces, bool arePlansKept, MAKE const &makeWorker,
                     CallStatus &status) const;
-
-    SurfaceFactory const &_factory;
-    PatchLevels const _levels;
-    CellForest const *const _forest; // null: levels
-    Options const _options;
-    std::unique_ptr<internal::PatchPlans> const _plans;
 };
 
-/// \brief Finds the tessellations of patches, or makes them: each is there until the next one is asked for.
-template <typename REAL>
-class PatchStream<REAL>::Data::TessellationFinder {
-public:
-    explicit TessellationFinder(Data const &stream) : _stream(stream) {}
+namespace internal {
 
-    /// \param section  -1: of the face as a whole
-    LevelTessellation const &Find(Index face, int section) {
-        return section < 0 ? find(face) : find(face, section);
-    }
-
-private:
-    LevelTessellation const &find(Index face) {
-        if (_stream._forest) {
-            return findTree(face);
-        }
-        _stream.getLevels(face, _levels);
-        if (!_plan || _levels != _planLevels) {
-            _plan.reset();
-            _plan = _stream._plans->Find(_levels);
-            _planLevels = _levels;
-        }
-        return _plan->tessellation;
-    }
-
-    LevelTessellation const &findTree(Index face) {
-        auto const make = [&] { return _stream.MakeTessellation(face); };
-        if (!internal::PatchPlans::IsShared(_stream._forest->GetTree(face))) {
-            _tessellation.reset();
-            return _tessellation.emplace(make());
-        }
-        _stream._forest->GetData().GetKey(face, _treeKey);
-        if (!_plan || _treeKey != _planKey) {
-            _plan.reset();
-            _plan = _stream._plans->Find(_treeKey, make);
-            _planKey = _treeKey;
-        }
-        return _plan->tessellation;
-    }
-
-    LevelTessellation const &find(Index face, int section) {
-        _tessellation.reset();
-        _plan.reset();
-        _stream.getLevels(face, _levels);
-        if (_stream._forest ? _sectionsFace != face
-                            : !_sections || _sections->GetLevels() != _levels.levels ||
-                                  _sections->GetFaceShape() != _levels.shape) {
-            _sections.reset();
-            _sections = _stream.makeSections(face);
-            _sectionsFace = face;
-        }
-        if (_stream._forest) {
-            return _tessellation.emplace(
-                LevelTessellation(*_sections, section, _stream._options.GetTessellationOptions()));
-        }
-        _plan = _stream._plans->Find(*_sections, section);
-        _planLevels = {};
-        return _plan->tessellation;
-    }
-
-    Data const &_stream;
-    std::optional<LevelTessellation> _tessellation; // of a tree
-    internal::FaceLevels _levels;
-    internal::FaceLevels _planLevels;
-    std::vector<int> _treeKey; // what tells a tree
-    std::vector<int> _planKey;
-    std::shared_ptr<internal::PatchPlan const> _plan;
-    std::unique_ptr<internal::FaceSections const> _sections; // of the last face that came in some
-    Index _sectionsFace = Far::INDEX_INVALID;
-};
-
-/// \brief Makes the patches of some faces one by one, and hands them out.
-template <typename REAL>
-class alignas(FarExt::internal::kCacheLine) PatchStream<REAL>::Data::Worker {
-public:
-    Worker(Data const &stream, REAL const *meshPoints, PointDescriptor const &meshPointDesc,
-           std::vector<Values> const &values, Sink const &sink)
-        : _stream(stream), _finder(stream), _factory(stream._factory), _meshPoints(meshPoints),
-          _meshPointDesc(meshPointDesc), _values(values), _sink(sink), _results(values.size()),
-          _resultStarts(values.size()) {}
-
-    /// \brief Makes the patch of a face that is no hole, or of one of its sections.
-    ///
-    /// \param section  -1: of the face as a whole
-    /// \return  false where the sink ended the stream, or a face has no surface, as status says
-    bool Run(Index face, int section, CallStatus &status) {
-        LevelTessellation const &tessellation = _finder.Find(face, section);
-        if (!evaluatePoints(face, tessellation, status) ||
-            !evaluateValues(face, tessellation, status)) {
-            return false;
-        }
-        bool const hasDerivatives = _stream._options.HasDerivatives();
-        return _sink({face, tessellation, _points.data(), _meshPointDesc.size,
-                      hasDerivatives ? _du.data() : nullptr, hasDerivatives ? _dv.data() : nullptr,
-                      _resultStarts.data()});
-    }
-
-private:
-    // Makes the surface of a face, and evaluates it at all places of the tessellation; results: as of FaceEvaluator.
-    bool evaluate(Index face, FarExt::Interpolation interpolation, int channel,
-                  LevelTessellation const &tessellation, REAL const *points,
-                  PointDescriptor const &desc, internal::SharedRings<REAL> &shared,
-                  REAL *const (&results)[6], CallStatus &status) {
-        status = _factory.TryInit(face, interpolation, channel, _surface);
-        if (status.IsOk()) {
-            internal::FaceEvaluator<REAL>(_surface.GetFace(), points, desc, &shared)
-                .Evaluate(tessellation.GetData(), results, PointDescriptor(desc.size));
-        }
-        return status.IsOk();
-    }
-
-    bool evaluatePoints(Index face, LevelTessellation const &tessellation, CallStatus &status) {
-        std::size_t const size =
-            std::size_t(tessellation.GetNumCoords()) * std::size_t(_meshPointDesc.size);
-        _points.resize(size);
-        REAL *results[6] = {_points.data()};
-        if (_stream._options.HasDerivatives()) {
-            _du.resize(size);
-            _dv.resize(size);
-            results[1] = _du.data();
-            results[2] = _dv.data();
-        }
-        return evaluate(face, FarExt::Interpolation::Vertex, -1, tessellation, _meshPoints,
-                        _meshPointDesc, _shared, results, status);
-    }
-
-    bool evaluateValues(Index face, LevelTessellation const &tessellation, CallStatus &status) {
-        for (std::size_t i = 0; i < _values.size(); ++i) {
-            Values const &values = _values[i];
-            FarExt::Interpolation const interpolation =
-                values.channel == Values::kVarying
-                    ? FarExt::Interpolation::Varying
-                    : FarExt::internal::GetChannelInterpolation(_factory.GetMesh(), values.channel);
-            std::vector<REAL> &result = _results[i].numbers;
-            result.resize(std::size_t(tessellation.GetNumCoords()) * std::size_t(values.desc.size));
-            REAL *const results[6] = {result.data()};
-            if (!evaluate(face, interpolation, values.channel, tessellation, values.values,
-                          values.desc, _results[i].shared, results, status)) {
-                return false;
-            }
-            _resultStarts[i] = result.data();
-        }
-        return true;
-    }
-
-    struct Results {
-        std::vector<REAL> numbers;
-        internal::SharedRings<REAL> shared;
-    };
-
-    Data const &_stream;
-    TessellationFinder _finder;
-    SurfaceFactory const &_factory;
-    REAL const *const _meshPoints;
-    PointDescriptor const _meshPointDesc;
-    std::vector<Values> const &_values;
-    Sink const &_sink;
-    Surface<REAL> _surface;
-    internal::SharedRings<REAL> _shared;
-    std::vector<REAL> _points;
-    std::vector<REAL> _du;
-    std::vector<REAL> _dv;
-    std::vector<Results> _results; // of values
-    std::vector<REAL const *> _resultStarts;
-};
-
-// The levels of the edges, then that of the inside; none of a forest.
-template <typename REAL>
-void PatchStream<REAL>::Data::getLevels(Index face, internal::FaceLevels &levels) const {
-    levels.levels.clear();
-    if (_forest) {
+// Writes the levels of the edges, then that of the inside; none of a forest.
+void StreamData::GetLevels(Index face, FaceLevels &result) const {
+    result.levels.clear();
+    if (forest) {
         return;
     }
-    FarExt::SurfaceFaces const &faces = _factory.GetFaces();
-    levels.shape = faces.GetShape(face);
-    for (int local = 0; local < levels.shape.size; ++local) {
-        levels.levels.push_back(_levels.GetEdgeLevel(faces.GetEdge(face, local).edge));
+    FarExt::SurfaceFaces const &faces = factory.GetFaces();
+    result.shape = faces.GetShape(face);
+    for (int local = 0; local < result.shape.size; ++local) {
+        result.levels.push_back(levels.GetEdgeLevel(faces.GetEdge(face, local).edge));
     }
-    levels.levels.push_back(_levels.GetFaceLevel(face));
+    result.levels.push_back(levels.GetFaceLevel(face));
 }
 
-// Whether a face comes in sections.
-template <typename REAL>
-bool PatchStream<REAL>::Data::isCut(Index face, internal::FaceLevels const &levels) const {
-    return _forest ? _plans->IsCut(_forest->GetTree(face)) : _plans->IsCut(levels);
+LevelTessellation StreamData::MakeWhole(Index face) const {
+    if (forest) {
+        return forest->GetTessellation(face, options.GetTessellationOptions());
+    }
+    FaceLevels ofFace;
+    GetLevels(face, ofFace);
+    return LevelTessellation(Parameterization(ofFace.shape), int(ofFace.levels.size()),
+                             ofFace.levels.data(), options.GetTessellationOptions());
 }
 
-// The sections of a face that is cut.
-template <typename REAL>
-std::unique_ptr<internal::FaceSections const>
-PatchStream<REAL>::Data::makeSections(Index face) const {
-    using internal::FaceSections;
-    int const maxLeaves = _plans->GetMaxLeaves();
-    if (_forest) {
-        return std::make_unique<FaceSections const>(_forest->GetTree(face),
-                                                    _forest->GetFacePolylines(face), maxLeaves);
+// The sections of a face that comes in some; null for others.
+std::unique_ptr<FaceSections const> StreamData::MakeSections(Index face) const {
+    int const maxLeaves = plans.GetMaxLeaves();
+    if (forest) {
+        CellTree const &tree = forest->GetTree(face);
+        return plans.IsCut(tree) ? std::make_unique<FaceSections const>(
+                                       tree, forest->GetFacePolylines(face), maxLeaves)
+                                 : nullptr;
     }
-    internal::FaceLevels levels;
-    getLevels(face, levels);
-    return std::make_unique<FaceSections const>(levels, maxLeaves);
+    FaceLevels ofFace;
+    GetLevels(face, ofFace);
+    return plans.IsCut(ofFace) ? std::make_unique<FaceSections const>(ofFace, maxLeaves) : nullptr;
 }
 
 /// \brief Some faces that are no holes, and what patches they have: those of faces in sections stand section
 /// by section, so that faces with the same levels have each of them side by side.
-template <typename REAL>
-struct PatchStream<REAL>::Data::Batch {
+struct StreamData::Batch {
     /// Faces that follow one another, whole or with the same sections.
     struct Group {
         std::size_t firstFace;
@@ -344,9 +163,7 @@ struct PatchStream<REAL>::Data::Batch {
 
 // Takes faces from number next on that are no holes, of a stream whose plans do not all fit in memory; where not all
 // of theirs do, faces with the same levels stand side by side.
-template <typename REAL>
-Far::Index PatchStream<REAL>::Data::takeFaces(AskedFaces const &faces, Index next,
-                                              Batch &batch) const {
+Far::Index StreamData::takeFaces(AskedFaces const &faces, Index next, Batch &batch) const {
     constexpr std::size_t kMinNumFaces = 1024;
     constexpr std::size_t kShareOfMemory = 16;
     constexpr double kMaxLeaves = 1 << 30;
@@ -355,144 +172,122 @@ Far::Index PatchStream<REAL>::Data::takeFaces(AskedFaces const &faces, Index nex
         Index face;
     };
     std::size_t const numFaces =
-        std::max(kMinNumFaces, _options.GetMaxMemory() / kShareOfMemory / sizeof(LevelsOfFace));
+        std::max(kMinNumFaces, options.GetMaxMemory() / kShareOfMemory / sizeof(LevelsOfFace));
     std::vector<LevelsOfFace> order;
-    internal::FaceLevels levels;
+    FaceLevels ofFace;
     std::unordered_set<std::size_t> hashes;
     std::size_t memory = 0;
     double numLeaves = 0; // at least as many as patches
     for (; next < faces.GetCount() && order.size() < numFaces && numLeaves < kMaxLeaves; ++next) {
         Index const face = faces[next];
-        if (_factory.GetFaces().IsHole(face)) {
+        if (factory.GetFaces().IsHole(face)) {
             continue;
         }
-        if (_forest) {
+        if (forest) {
             order.push_back({0, face});
-            numLeaves += _forest->GetTree(face).GetNumLeaves();
+            numLeaves += forest->GetTree(face).GetNumLeaves();
             continue;
         }
-        getLevels(face, levels);
-        numLeaves += internal::FaceSections::CountLeaves(levels);
-        std::size_t hash = levels.shape.isHalf ? 1 : 0;
-        for (int const level : levels.levels) {
+        GetLevels(face, ofFace);
+        numLeaves += FaceSections::CountLeaves(ofFace.shape, ofFace.levels.back());
+        std::size_t hash = ofFace.shape.isHalf ? 1 : 0;
+        for (int const level : ofFace.levels) {
             hash = (hash ^ std::size_t(level + 1)) * 0x9e3779b97f4a7c15;
             hash ^= hash >> 29;
         }
         order.push_back({hash, face});
-        if (memory <= _plans->GetMaxMemory() && hashes.insert(hash).second) {
-            memory += _plans->GetSizeOfMaking(levels);
+        if (memory <= plans.GetMaxMemory() && hashes.insert(hash).second) {
+            memory += plans.GetSizeOfMaking(ofFace);
         }
     }
-    if (memory > _plans->GetMaxMemory()) {
+    if (memory > plans.GetMaxMemory()) {
         std::sort(order.begin(), order.end(), [](LevelsOfFace const &a, LevelsOfFace const &b) {
             return a.hash != b.hash ? a.hash < b.hash : a.face < b.face;
         });
     }
     batch = {};
-    internal::FaceLevels lastLevels;
+    FaceLevels lastLevels;
     bool isLastCut = false;
     int numSections = 0;
     for (LevelsOfFace const &levelsOfFace : order) {
-        getLevels(levelsOfFace.face, levels);
-        bool isOfLastGroup = !_forest && !batch.groups.empty() && levels == lastLevels;
+        GetLevels(levelsOfFace.face, ofFace);
+        bool isOfLastGroup = !forest && !batch.groups.empty() && ofFace == lastLevels;
         if (!isOfLastGroup) {
-            bool const isFaceCut = isCut(levelsOfFace.face, levels);
-            isOfLastGroup = !batch.groups.empty() && !isFaceCut && !isLastCut;
-            numSections = isFaceCut ? makeSections(levelsOfFace.face)->GetNumSections() : 0;
-            isLastCut = isFaceCut;
-            lastLevels = levels;
+            std::unique_ptr<FaceSections const> const sections = MakeSections(levelsOfFace.face);
+            isOfLastGroup = !batch.groups.empty() && !sections && !isLastCut;
+            numSections = sections ? sections->GetNumSections() : 0;
+            isLastCut = sections != nullptr;
+            lastLevels = ofFace;
         }
         batch.Add(levelsOfFace.face, numSections, isOfLastGroup);
     }
     return next;
 }
 
-template <typename REAL>
-int PatchStream<REAL>::Data::GetNumSections(Index face) const {
-    internal::FaceLevels levels;
-    getLevels(face, levels);
-    return isCut(face, levels) ? makeSections(face)->GetNumSections() : 1;
-}
-
-template <typename REAL>
-LevelTessellation PatchStream<REAL>::Data::MakeTessellation(Index face, int section) const {
-    internal::FaceLevels levels;
-    getLevels(face, levels);
-    return isCut(face, levels)
-               ? LevelTessellation(*makeSections(face), section, _options.GetTessellationOptions())
-               : MakeTessellation(face);
-}
-
-template <typename REAL>
-LevelTessellation PatchStream<REAL>::Data::MakeTessellation(Index face) const {
-    if (_forest) {
-        return _forest->GetTessellation(face, _options.GetTessellationOptions());
-    }
-    internal::FaceLevels levels;
-    getLevels(face, levels);
-    return LevelTessellation(_factory.GetFaceParameterization(face), int(levels.levels.size()),
-                             levels.levels.data(), _options.GetTessellationOptions());
-}
-
-template <typename REAL>
-CallStatus PatchStream<REAL>::Data::CheckRange(Index beginFace, Index endFace) const {
-    int const numFaces = _factory.GetNumFaces();
-    return 0 <= beginFace && beginFace <= endFace && endFace <= numFaces
-               ? CallStatus()
-               : FarExt::internal::Failure(StatusCode::InvalidArgument,
-                                           "faces " + std::to_string(beginFace) + " to " +
-                                               std::to_string(endFace) + " are no range of the " +
-                                               std::to_string(numFaces) + " of the mesh");
-}
-
-template <typename REAL>
-CallStatus PatchStream<REAL>::Data::CheckList(std::vector<Index> const &faces) const {
-    int const numFaces = _factory.GetNumFaces();
-    auto const bad = std::find_if(faces.begin(), faces.end(),
-                                  [&](Index face) { return face < 0 || face >= numFaces; });
-    return bad == faces.end() ? CallStatus()
-                              : CallStatus(StatusCode::InvalidArgument, ComponentType::Face, *bad,
-                                           "face " + std::to_string(*bad) + " is none of the " +
-                                               std::to_string(numFaces) + " of the mesh");
-}
-
 // The status names the first wrong face, whichever thread finds it.
-template <typename REAL>
-CallStatus PatchStream<REAL>::Data::checkFaces(AskedFaces const &faces, bool *arePlansKept) const {
-    FarExt::SurfaceFaces const &base = _factory.GetFaces();
+CallStatus StreamData::checkFaces(AskedFaces const &faces, bool &arePlansKept) const {
+    FarExt::SurfaceFaces const &base = factory.GetFaces();
     constexpr int kTriangle = 3;
-    if (!LevelTessellation(Parameterization(kTriangle), 0, _options.GetTessellationOptions())
+    if (!LevelTessellation(Parameterization(kTriangle), 0, options.GetTessellationOptions())
              .IsValid()) {
         return FarExt::internal::Failure(
             StatusCode::InvalidArgument,
-            "facets of size " + std::to_string(_options.GetTessellationOptions().GetFacetSize()) +
+            "facets of size " + std::to_string(options.GetTessellationOptions().GetFacetSize()) +
                 " with these strides are none that a tessellation has");
     }
-    if (_forest && _forest->GetNumFaces() != base.GetNumFaces()) {
-        return FarExt::internal::Failure(
-            StatusCode::InvalidArgument,
-            "the forest has " + std::to_string(_forest->GetNumFaces()) + " trees, the mesh " +
-                std::to_string(base.GetNumFaces()) + " faces");
+    if (forest && forest->GetNumFaces() != base.GetNumFaces()) {
+        return FarExt::internal::Failure(StatusCode::InvalidArgument,
+                                         "the forest has " + std::to_string(forest->GetNumFaces()) +
+                                             " trees, the mesh " +
+                                             std::to_string(base.GetNumFaces()) + " faces");
     }
-    if (_forest && &_forest->GetData().faces.GetLevel() != &base.GetLevel()) {
+    if (forest && &forest->GetFaces().GetLevel() != &base.GetLevel()) {
         return FarExt::internal::Failure(StatusCode::InvalidArgument,
                                          "the forest is that of another refiner");
     }
+    // Threads have sizes of plans by key, which come together when they end.
+    using Sizes = std::map<std::vector<int>, std::size_t>;
+    std::mutex mutex;
+    Sizes sizes;
     struct Checker {
-        internal::PlanMemory::Counter counter;
-        internal::FaceLevels levels;
+        ~Checker() {
+            std::lock_guard<std::mutex> const lock(mutexOfAll);
+            ofAll.merge(own);
+        }
+
+        std::mutex &mutexOfAll;
+        Sizes &ofAll;
+        Sizes own = {};
+        std::size_t memory = 0;
+        FaceLevels ofFace = {};
+        FaceLevels last = {};
     };
-    internal::PlanMemory memory(*_plans);
+    std::atomic<bool> hasRoom(true);
     std::atomic<Index> firstBad(faces.GetCount());
     CallStatus result;
-    std::mutex mutex;
+    // Whether the plans of a thread have room, with that of the face.
+    auto const haveRoom = [&](Checker &checker, Index face) {
+        if (forest) {
+            return !plans.IsCut(forest->GetTree(face));
+        }
+        if (checker.ofFace != checker.last) {
+            checker.last = checker.ofFace;
+            auto const [size, isNew] = checker.own.emplace(checker.ofFace.GetKey(), 0);
+            if (isNew) {
+                size->second = plans.GetSizeOfMaking(checker.ofFace);
+                checker.memory += size->second;
+                return checker.memory <= plans.GetMaxMemory() && !plans.IsCut(checker.ofFace);
+            }
+        }
+        return true;
+    };
     auto const check = [&](Checker &checker, Index begin, Index end) {
         for (Index i = begin; i < end && i < firstBad; ++i) {
             Index const face = faces[i];
             if (base.IsHole(face)) {
                 continue;
             }
-            CallStatus status = checkFace(face, checker.levels);
+            CallStatus status = checkFace(face, checker.ofFace);
             if (!status.IsOk()) {
                 std::lock_guard<std::mutex> const lock(mutex);
                 if (i < firstBad) {
@@ -501,51 +296,39 @@ CallStatus PatchStream<REAL>::Data::checkFaces(AskedFaces const &faces, bool *ar
                 }
                 return;
             }
-            if (!_forest) {
-                checker.counter.Add(checker.levels);
-            } else if (_plans->IsCut(_forest->GetTree(face))) {
-                memory.SetCut();
+            if (hasRoom && !haveRoom(checker, face)) {
+                hasRoom = false;
             }
         }
     };
     FarExt::internal::ParallelForRange(
         faces.GetCount(),
         [&] {
-            return Checker{internal::PlanMemory::Counter(memory), {}};
+            return Checker{mutex, sizes};
         },
         check, FarExt::internal::kShortParallelRange);
-    *arePlansKept = memory.HasRoom();
+    std::size_t memory = 0;
+    for (auto const &[key, size] : sizes) {
+        memory += size;
+    }
+    arePlansKept = hasRoom && memory <= plans.GetMaxMemory();
     return result;
 }
 
 // Writes the levels, in a stream of levels.
-template <typename REAL>
-CallStatus PatchStream<REAL>::Data::checkFace(Index face, internal::FaceLevels &levels) const {
-    CallStatus status = _factory.CheckFace(face);
+CallStatus StreamData::checkFace(Index face, FaceLevels &ofFace) const {
+    CallStatus status = factory.CheckFace(face);
     if (!status.IsOk()) {
         return status;
     }
-    if (_forest) {
-        return checkTree(face);
+    if (forest) {
+        return forest->IsMatched(face)
+                   ? CallStatus()
+                   : CallStatus(StatusCode::InvalidArgument, ComponentType::Face, face,
+                                "the tree of face " + std::to_string(face) +
+                                    " is not that of such a face, or its edges were not matched");
     }
-    getLevels(face, levels);
-    return checkLevels(face, levels);
-}
-
-template <typename REAL>
-CallStatus PatchStream<REAL>::Data::checkTree(Index face) const {
-    return _forest->IsMatched(face)
-               ? CallStatus()
-               : CallStatus(StatusCode::InvalidArgument, ComponentType::Face, face,
-                            "the tree of face " + std::to_string(face) +
-                                " is not that of such a face, or its edges were not matched");
-}
-
-// Whether those of a face and its edges are some that a tessellation has.
-template <typename REAL>
-CallStatus PatchStream<REAL>::Data::checkLevels(Index face,
-                                                internal::FaceLevels const &faceLevels) const {
-    std::vector<int> const &levels = faceLevels.levels;
+    GetLevels(face, ofFace);
     auto const isLevel = [](int level) {
         return 0 <= level && level <= LevelTessellation::kLastLevel;
     };
@@ -555,37 +338,36 @@ CallStatus PatchStream<REAL>::Data::checkLevels(Index face,
                               std::to_string(level) + ", which is not one of 0 to " +
                               std::to_string(LevelTessellation::kLastLevel));
     };
-    if (!isLevel(levels.back())) {
-        return refuse(levels.back(), ComponentType::Face, "face", face);
+    int const ofInside = ofFace.levels.back();
+    if (!isLevel(ofInside)) {
+        return refuse(ofInside, ComponentType::Face, "face", face);
     }
-    auto const bad = std::find_if_not(levels.begin(), levels.end(), isLevel);
-    if (bad == levels.end()) {
+    auto const bad = std::find_if_not(ofFace.levels.begin(), ofFace.levels.end(), isLevel);
+    if (bad == ofFace.levels.end()) {
         return CallStatus();
     }
-    Index const edge = _factory.GetFaces().GetEdge(face, int(bad - levels.begin())).edge;
+    Index const edge = factory.GetFaces().GetEdge(face, int(bad - ofFace.levels.begin())).edge;
     return refuse(*bad, ComponentType::Edge, "edge", edge);
 }
 
 // Has workers, each of which makeWorker() gives, make the patches of faces; false where one gave false.
-template <typename REAL>
 template <typename MAKE>
-bool PatchStream<REAL>::Data::runWorkers(AskedFaces const &faces, bool arePlansKept,
-                                         MAKE const &makeWorker, CallStatus &status) const {
+bool StreamData::runWorkers(AskedFaces const &faces, bool arePlansKept, MAKE const &makeWorker,
+                            CallStatus &status) const {
     std::atomic<bool> isEnded(false);
     std::mutex mutex;
     Index const length = std::min(std::max(faces.GetCount() / kNumRangesWanted, 1), kMaxRange);
     // Hands out patches getPatch(0) ... getPatch(count - 1), where their faces are no holes.
     auto const run = [&](Index count, auto const &getPatch) {
-        using PatchOfFace = typename Batch::PatchOfFace;
-        FarExt::SurfaceFaces const &base = _factory.GetFaces();
+        FarExt::SurfaceFaces const &base = factory.GetFaces();
         FarExt::internal::ParallelForRange(
             count, makeWorker,
             [&](auto &worker, Index begin, Index end) {
                 CallStatus workerStatus;
                 for (Index i = begin; i < end && !isEnded; ++i) {
-                    PatchOfFace const patch = getPatch(i);
+                    Batch::PatchOfFace const patch = getPatch(i);
                     if (base.IsHole(patch.face) ||
-                        worker->Run(patch.face, patch.section, workerStatus)) {
+                        worker.Run(patch.face, patch.section, workerStatus)) {
                         continue;
                     }
                     isEnded = true;
@@ -598,48 +380,209 @@ bool PatchStream<REAL>::Data::runWorkers(AskedFaces const &faces, bool arePlansK
             length);
     };
     if (arePlansKept) {
-        run(faces.GetCount(), [&](Index i) { return typename Batch::PatchOfFace{faces[i], -1}; });
+        run(faces.GetCount(), [&](Index i) { return Batch::PatchOfFace{faces[i], -1}; });
     }
     Batch batch;
     for (Index next = 0; !arePlansKept && next < faces.GetCount() && !isEnded;) {
         next = takeFaces(faces, next, batch);
         run(batch.numPatches, [&](Index i) { return batch.Get(i); });
     }
-    _plans->Trim();
+    plans.Trim();
     return !isEnded;
 }
 
-template <typename REAL>
-bool PatchStream<REAL>::Data::Run(REAL const meshPoints[], PointDescriptor const &meshPointDesc,
-                                  std::vector<Values> const &values, AskedFaces const &faces,
-                                  Sink const &sink, CallStatus *status) const {
+// Checks the faces, and has workers make their patches.
+template <typename MAKE>
+bool StreamData::Run(AskedFaces const &faces, MAKE const &makeWorker, CallStatus *status) const {
     bool arePlansKept = false;
-    CallStatus result = checkFaces(faces, &arePlansKept);
-    for (Values const &further : values) {
-        if (result.IsOk() && further.channel != Values::kVarying) {
-            result = FarExt::internal::CheckChannel(further.channel, _factory.GetNumFVarChannels());
-        }
-    }
+    CallStatus result = checkFaces(faces, arePlansKept);
     if (!FarExt::internal::Report(result, status)) {
         return false;
     }
-    bool const isDone = runWorkers(
-        faces, arePlansKept,
-        [&] { return std::make_unique<Worker>(*this, meshPoints, meshPointDesc, values, sink); },
-        result);
+    bool const isDone = runWorkers(faces, arePlansKept, makeWorker, result);
     FarExt::internal::Report(result, status);
     return isDone;
 }
 
-template <typename REAL>
-bool PatchStream<REAL>::Data::RunTessellations(TessellationSink const &sink,
-                                               CallStatus *status) const {
-    AskedFaces const faces(0, _factory.GetNumFaces());
-    bool arePlansKept = false;
-    CallStatus result = checkFaces(faces, &arePlansKept);
-    if (!FarExt::internal::Report(result, status)) {
-        return false;
+} // namespace internal
+
+namespace {
+
+using internal::StreamData;
+
+/// \brief Finds the tessellations of patches, or makes them: each is there until the next one is asked for.
+class TessellationFinder {
+public:
+    explicit TessellationFinder(StreamData const &stream) : _stream(stream) {}
+
+    /// \param section  -1: of the face as a whole
+    LevelTessellation const &Find(Far::Index face, int section) {
+        if (section >= 0) {
+            findSection(face, section);
+        } else if (_stream.forest) {
+            findTree(face);
+        } else {
+            _stream.GetLevels(face, _levels);
+            if (!_plan || _levels != _planLevels) {
+                _plan.reset();
+                _plan = _stream.plans.Find(_levels);
+                _planLevels = _levels;
+            }
+        }
+        return *_plan;
     }
+
+private:
+    void findTree(Far::Index face) {
+        if (!internal::PatchPlans::IsShared(_stream.forest->GetTree(face))) {
+            _plan.reset();
+            _plan = std::make_shared<LevelTessellation const>(_stream.MakeWhole(face));
+            _planKey.clear();
+            return;
+        }
+        _stream.forest->GetTessellationKey(face, _treeKey);
+        if (_treeKey != _planKey) {
+            _plan.reset();
+            _plan = _stream.plans.Find(_treeKey, [&] { return _stream.MakeWhole(face); });
+            _planKey = _treeKey;
+        }
+    }
+
+    void findSection(Far::Index face, int section) {
+        _plan.reset();
+        _planKey.clear();
+        _planLevels = {};
+        _stream.GetLevels(face, _levels);
+        if (_stream.forest ? _sectionsFace != face
+                           : !_sections || _sections->GetLevels() != _levels.levels ||
+                                 _sections->GetFaceShape() != _levels.shape) {
+            _sections.reset();
+            _sections = _stream.MakeSections(face);
+            _sectionsFace = face;
+        }
+        _plan = _stream.forest ? std::make_shared<LevelTessellation const>(
+                                     *_sections, section, _stream.options.GetTessellationOptions())
+                               : _stream.plans.Find(*_sections, section);
+    }
+
+    StreamData const &_stream;
+    internal::FaceLevels _levels;
+    internal::FaceLevels _planLevels;
+    std::vector<int> _treeKey; // what tells a tree
+    std::vector<int> _planKey;
+    internal::PatchPlans::Plan _plan;
+    std::unique_ptr<internal::FaceSections const> _sections; // of the last face that came in some
+    Far::Index _sectionsFace = Far::INDEX_INVALID;
+};
+
+/// \brief Makes the patches of some faces one by one, and hands them out.
+template <typename REAL>
+class alignas(FarExt::internal::kCacheLine) PatchWorker {
+public:
+    using Index = Far::Index;
+    using Stream = PatchStream<REAL>;
+    using Values = typename Stream::Values;
+    using PointDescriptor = typename Stream::PointDescriptor;
+
+    /// \param values  of vertices first, and then what is wanted besides
+    PatchWorker(StreamData const &stream, std::vector<Values> const &values,
+                typename Stream::Sink const &sink)
+        : _stream(stream), _finder(stream), _values(values), _sink(sink), _results(values.size()),
+          _resultStarts(values.size()) {}
+
+    /// \brief Makes the patch of a face that is no hole, or of one of its sections.
+    ///
+    /// \param section  -1: of the face as a whole
+    /// \return  false where the sink ended the stream, or a face has no surface, as status says
+    bool Run(Index face, int section, CallStatus &status) {
+        LevelTessellation const &tessellation = _finder.Find(face, section);
+        for (std::size_t i = 0; i < _values.size(); ++i) {
+            if (!evaluate(face, tessellation, i, status)) {
+                return false;
+            }
+        }
+        bool const hasDerivatives = _stream.options.HasDerivatives();
+        return _sink({face, tessellation, _resultStarts[0], _values[0].desc.size,
+                      hasDerivatives ? _du.data() : nullptr, hasDerivatives ? _dv.data() : nullptr,
+                      _resultStarts.data() + 1});
+    }
+
+private:
+    bool evaluate(Index face, LevelTessellation const &tessellation, std::size_t i,
+                  CallStatus &status) {
+        Values const &values = _values[i];
+        SurfaceFactory const &factory = _stream.factory;
+        FarExt::Interpolation const interpolation =
+            i == 0 ? FarExt::Interpolation::Vertex
+            : values.channel == Values::kVarying
+                ? FarExt::Interpolation::Varying
+                : FarExt::internal::GetChannelInterpolation(factory.GetMesh(), values.channel);
+        status = factory.TryInit(face, interpolation, values.channel, _surface);
+        if (!status.IsOk()) {
+            return false;
+        }
+        std::size_t const size =
+            std::size_t(tessellation.GetNumCoords()) * std::size_t(values.desc.size);
+        _results[i].numbers.resize(size);
+        _resultStarts[i] = _results[i].numbers.data();
+        REAL *results[6] = {_results[i].numbers.data()};
+        if (i == 0 && _stream.options.HasDerivatives()) {
+            _du.resize(size);
+            _dv.resize(size);
+            results[1] = _du.data();
+            results[2] = _dv.data();
+        }
+        internal::FaceEvaluator<REAL>(_surface.GetFace(), values.values, values.desc,
+                                      &_results[i].shared)
+            .Evaluate(tessellation.GetData(), results, PointDescriptor(values.desc.size));
+        return true;
+    }
+
+    struct Results {
+        std::vector<REAL> numbers;
+        internal::SharedRings<REAL> shared;
+    };
+
+    StreamData const &_stream;
+    TessellationFinder _finder;
+    std::vector<Values> const &_values;
+    typename Stream::Sink const &_sink;
+    Surface<REAL> _surface;
+    std::vector<Results> _results; // points, and values
+    std::vector<REAL const *> _resultStarts;
+    std::vector<REAL> _du; // of points
+    std::vector<REAL> _dv;
+};
+
+// PatchStream::Run().
+template <typename REAL>
+bool runStream(StreamData const &stream, REAL const *meshPoints,
+               typename PatchStream<REAL>::PointDescriptor const &meshPointDesc,
+               std::vector<typename PatchStream<REAL>::Values> const &values,
+               AskedFaces const &faces, typename PatchStream<REAL>::Sink const &sink,
+               CallStatus *status) {
+    std::vector<typename PatchStream<REAL>::Values> all = {{meshPoints, meshPointDesc}};
+    for (auto const &further : values) {
+        CallStatus const result = further.channel == further.kVarying
+                                      ? CallStatus()
+                                      : FarExt::internal::CheckChannel(
+                                            further.channel, stream.factory.GetNumFVarChannels());
+        if (!result.IsOk()) {
+            return FarExt::internal::Report(result, status);
+        }
+        all.push_back(further);
+    }
+    return stream.Run(
+        faces, [&] { return PatchWorker<REAL>(stream, all, sink); }, status);
+}
+
+} // namespace
+
+PatchTessellations::PatchTessellations(SurfaceFactory const &factory, PatchLevels levels,
+                                       CellForest const *forest, Options const &options)
+    : _data(std::make_shared<StreamData const>(factory, std::move(levels), forest, options)) {}
+
+bool PatchTessellations::RunTessellations(TessellationSink const &sink, CallStatus *status) const {
     struct alignas(FarExt::internal::kCacheLine) Finder {
         bool Run(Index face, int section, CallStatus & /*status*/) {
             return sink(face, finder.Find(face, section));
@@ -648,23 +591,35 @@ bool PatchStream<REAL>::Data::RunTessellations(TessellationSink const &sink,
         TessellationFinder finder;
         TessellationSink const &sink;
     };
-    return runWorkers(
-        faces, arePlansKept,
+    return _data->Run(
+        AskedFaces(0, GetFactory().GetNumFaces()),
         [&] {
-            return std::unique_ptr<Finder>(new Finder{TessellationFinder(*this), sink});
+            return Finder{TessellationFinder(*_data), sink};
         },
-        result);
+        status);
 }
 
-template <typename REAL>
-auto PatchStream<REAL>::Data::GetSectionPolygons(Index face) const -> SectionPolygons {
+int PatchTessellations::GetNumSections(Index face) const {
+    std::unique_ptr<internal::FaceSections const> const sections = _data->MakeSections(face);
+    return sections ? sections->GetNumSections() : 1;
+}
+
+LevelTessellation PatchTessellations::MakeTessellation(Index face) const {
+    return _data->MakeWhole(face);
+}
+
+LevelTessellation PatchTessellations::MakeTessellation(Index face, int section) const {
+    std::unique_ptr<internal::FaceSections const> const sections = _data->MakeSections(face);
+    return sections ? LevelTessellation(*sections, section, GetOptions().GetTessellationOptions())
+                    : MakeTessellation(face);
+}
+
+auto PatchTessellations::GetSectionPolygons(Index face) const -> SectionPolygons {
     SectionPolygons result;
-    internal::FaceLevels levels;
-    getLevels(face, levels);
-    if (!isCut(face, levels)) {
+    std::unique_ptr<internal::FaceSections const> const sections = _data->MakeSections(face);
+    if (!sections) {
         return result;
     }
-    std::unique_ptr<internal::FaceSections const> const sections = makeSections(face);
     for (int section = 0; section < sections->GetNumSections(); ++section) {
         std::vector<int> const polygon = sections->GetPolygon(section);
         result.firstCorners.push_back(int(result.vertices.size()));
@@ -680,79 +635,46 @@ auto PatchStream<REAL>::Data::GetSectionPolygons(Index face) const -> SectionPol
     return result;
 }
 
-template <typename REAL>
-PatchStream<REAL>::PatchStream(SurfaceFactory const &factory, PatchLevels levels,
-                               Options const &options)
-    : _data(std::make_shared<Data const>(factory, std::move(levels), nullptr, options)) {}
+SurfaceFactory const &PatchTessellations::GetFactory() const { return _data->factory; }
 
-template <typename REAL>
-PatchStream<REAL>::PatchStream(SurfaceFactory const &factory, CellForest const &forest,
-                               Options const &options)
-    : _data(std::make_shared<Data const>(factory, PatchLevels(0), &forest, options)) {}
+PatchLevels const &PatchTessellations::GetLevels() const { return _data->levels; }
+
+CellForest const *PatchTessellations::GetForest() const { return _data->forest; }
+
+auto PatchTessellations::GetOptions() const -> Options const & { return _data->options; }
 
 template <typename REAL>
 bool PatchStream<REAL>::Run(REAL const meshPoints[], PointDescriptor const &meshPointDesc,
                             std::vector<Values> const &values, Index beginFace, Index endFace,
                             Sink const &sink, CallStatus *status) const {
-    CallStatus const result = _data->CheckRange(beginFace, endFace);
-    return result.IsOk() ? _data->Run(meshPoints, meshPointDesc, values,
-                                      AskedFaces(beginFace, endFace), sink, status)
-                         : FarExt::internal::Report(result, status);
+    int const numFaces = GetFactory().GetNumFaces();
+    if (!(0 <= beginFace && beginFace <= endFace && endFace <= numFaces)) {
+        return FarExt::internal::Report(
+            FarExt::internal::Failure(StatusCode::InvalidArgument,
+                                      "faces " + std::to_string(beginFace) + " to " +
+                                          std::to_string(endFace) + " are no range of the " +
+                                          std::to_string(numFaces) + " of the mesh"),
+            status);
+    }
+    return runStream(*_data, meshPoints, meshPointDesc, values, AskedFaces(beginFace, endFace),
+                     sink, status);
 }
 
 template <typename REAL>
 bool PatchStream<REAL>::Run(REAL const meshPoints[], PointDescriptor const &meshPointDesc,
                             std::vector<Values> const &values, std::vector<Index> const &faces,
                             Sink const &sink, CallStatus *status) const {
-    CallStatus const result = _data->CheckList(faces);
-    return result.IsOk()
-               ? _data->Run(meshPoints, meshPointDesc, values, AskedFaces(faces), sink, status)
-               : FarExt::internal::Report(result, status);
-}
-
-template <typename REAL>
-bool PatchStream<REAL>::RunTessellations(TessellationSink const &sink, CallStatus *status) const {
-    return _data->RunTessellations(sink, status);
-}
-
-template <typename REAL>
-int PatchStream<REAL>::GetNumSections(Index face) const {
-    return _data->GetNumSections(face);
-}
-
-template <typename REAL>
-LevelTessellation PatchStream<REAL>::MakeTessellation(Index face) const {
-    return _data->MakeTessellation(face);
-}
-
-template <typename REAL>
-LevelTessellation PatchStream<REAL>::MakeTessellation(Index face, int section) const {
-    return _data->MakeTessellation(face, section);
-}
-
-template <typename REAL>
-auto PatchStream<REAL>::GetSectionPolygons(Index face) const -> SectionPolygons {
-    return _data->GetSectionPolygons(face);
-}
-
-template <typename REAL>
-SurfaceFactory const &PatchStream<REAL>::GetFactory() const {
-    return _data->GetFactory();
-}
-
-template <typename REAL>
-PatchLevels const &PatchStream<REAL>::GetLevels() const {
-    return _data->GetLevels();
-}
-
-template <typename REAL>
-CellForest const *PatchStream<REAL>::GetForest() const {
-    return _data->GetForest();
-}
-
-template <typename REAL>
-auto PatchStream<REAL>::GetOptions() const -> Options const & {
-    return _data->GetOptions();
+    int const numFaces = GetFactory().GetNumFaces();
+    auto const bad = std::find_if(faces.begin(), faces.end(),
+                                  [&](Index face) { return face < 0 || face >= numFaces; });
+    if (bad != faces.end()) {
+        return FarExt::internal::Report(
+            CallStatus(StatusCode::InvalidArgument, ComponentType::Face, *bad,
+                       "face " + std::to_string(*bad) + " is none of the " +
+                           std::to_string(numFaces) + " of the mesh"),
+            status);
+    }
+    return runStream(*_data, meshPoints, meshPointDesc, values, AskedFaces(faces), sink, status);
 }
 
 template class PatchStream<float>;

@@ -39,6 +39,112 @@ private:
     Function _ofEdges;
 };
 
+namespace internal {
+class StreamData;
+}
+
+/// \brief What the streams of both precisions have in common: options, and the tessellations of patches.
+class OPENSUBDIVHEX_API PatchTessellations {
+public:
+    /// A base face or an edge of the base mesh.
+    using Index = Far::Index;
+
+    /// \brief Facets and memory.
+    class Options {
+    public:
+        /// Triangles, no derivatives, and 4 megabytes.
+        Options() = default;
+
+        /// Sets the options of facets; strides of coordinates are ignored.
+        Options &SetTessellationOptions(LevelTessellation::Options const &options) {
+            _tessellationOptions = options;
+            return *this;
+        }
+        /// The options of facets.
+        LevelTessellation::Options const &GetTessellationOptions() const {
+            return _tessellationOptions;
+        }
+
+        /// Sets whether patches have the derivatives of their points: their cross products are normals.
+        Options &SetDerivatives(bool hasDerivatives) {
+            _hasDerivatives = hasDerivatives;
+            return *this;
+        }
+        /// Whether patches have derivatives.
+        bool HasDerivatives() const { return _hasDerivatives; }
+
+        /// \brief Sets the bytes that all tessellations of a time take, over all threads, and making them.
+        ///
+        /// Patches with the same levels share a tessellation.  If not all tessellations fit, patches that share one are made
+        /// in succession, so that few tessellations are made twice.
+        ///
+        /// Making a tessellation takes about 300 bytes a point: a face may take a fourth of the bytes that are set, or 3
+        /// megabytes if these are more (4 with derivatives).  Faces that take more come in sections.  A single cell is never
+        /// cut: it has all points that finer edges of the face, or cells beside it, have on its sides.
+        ///
+        /// The types of faces are not counted: they are in the cache, which has a bound of its own (SurfaceFactoryCache).
+        Options &SetMaxMemory(std::size_t bytes) {
+            _maxMemory = bytes;
+            return *this;
+        }
+        /// The number that was set.
+        std::size_t GetMaxMemory() const { return _maxMemory; }
+
+    private:
+        LevelTessellation::Options _tessellationOptions;
+        bool _hasDerivatives = false;
+        std::size_t _maxMemory = std::size_t(4) << 20;
+    };
+
+    /// The number of patches of a face: 1, or its sections.  The face is in range, and its levels or tree are valid.
+    int GetNumSections(Index face) const;
+    /// The tessellation of such a face as a whole, however much memory it takes.
+    LevelTessellation MakeTessellation(Index face) const;
+    /// The tessellation of a section, 0 ... GetNumSections(face) - 1, as the patches of the face have it.
+    LevelTessellation MakeTessellation(Index face, int section) const;
+
+    /// Takes the face and the tessellation of a patch, as a sink takes a patch.
+    using TessellationSink = std::function<bool(Index face, LevelTessellation const &tessellation)>;
+    /// \brief Hands out the tessellations of all patches, as PatchStream::Run() makes them, without points: for callers that
+    /// must know all patches before the first point.
+    ///
+    /// \return  as that of PatchStream::Run()
+    bool RunTessellations(TessellationSink const &sink, FarExt::CallStatus *status = nullptr) const;
+
+    /// \brief The sections of a face, as polygons in it.
+    ///
+    /// A *corner* is a vertex of one of these polygons, in the order of the boundary of the section's tessellation
+    /// (LevelTessellation::GetVertexPlace()).  Where sections meet, their corners have the same vertex.
+    struct SectionPolygons {
+        std::vector<int> firstCorners; ///< by section; then their end
+        std::vector<int> vertices;     ///< by corner
+        /// By vertex: the edge of the face on which it lies, for a vertex of the face the edge that begins there; -1: inside
+        /// the face.
+        std::vector<int> edges;
+        /// By vertex on an edge: the number of its point among those of LevelTessellation::GetEdgeCoords() of the whole
+        /// face; -1: it is the vertex of the face.
+        std::vector<int> edgePoints;
+    };
+    /// The sections of a face with more than one (GetNumSections()); empty for other faces.
+    SectionPolygons GetSectionPolygons(Index face) const;
+
+    /// The factory that was given.
+    SurfaceFactory const &GetFactory() const;
+    /// The levels that were given; with a forest: 0.
+    PatchLevels const &GetLevels() const;
+    /// The forest that was given, or null.
+    CellForest const *GetForest() const;
+    /// The options that were given.
+    Options const &GetOptions() const;
+
+protected:
+    /// \param forest  null: levels
+    PatchTessellations(SurfaceFactory const &factory, PatchLevels levels, CellForest const *forest,
+                       Options const &options);
+
+    std::shared_ptr<internal::StreamData const> _data; ///< never null: copied where it is moved
+};
+
 /// \brief Evaluates the surfaces of all base faces in bounded memory: hands each to a *sink* and forgets it.
 ///
 /// \code
@@ -69,10 +175,8 @@ private:
 ///
 /// Several threads may call Run() of one stream at once.  std::bad_alloc passes through.
 template <typename REAL>
-class OPENSUBDIVHEX_API PatchStream {
+class OPENSUBDIVHEX_API PatchStream : public PatchTessellations {
 public:
-    /// A base face or an edge of the base mesh.
-    using Index = Far::Index;
     /// The size of points and the distance from one to the next.
     using PointDescriptor = typename Surface<REAL>::PointDescriptor;
 
@@ -108,54 +212,6 @@ public:
     /// \return  false to end the stream: some patches may still come
     using Sink = std::function<bool(Patch const &)>;
 
-    /// \brief Facets and memory.
-    class Options {
-    public:
-        /// Triangles, no derivatives, and 4 megabytes.
-        Options() = default;
-
-        /// Sets the options of facets; strides of coordinates are ignored.
-        Options &SetTessellationOptions(LevelTessellation::Options const &options) {
-            _tessellationOptions = options;
-            return *this;
-        }
-        /// The options of facets.
-        LevelTessellation::Options const &GetTessellationOptions() const {
-            return _tessellationOptions;
-        }
-
-        /// Sets whether patches have the derivatives of their points: their cross products are normals.
-        Options &SetDerivatives(bool hasDerivatives) {
-            _hasDerivatives = hasDerivatives;
-            return *this;
-        }
-        /// Whether patches have derivatives.
-        bool HasDerivatives() const { return _hasDerivatives; }
-
-        /// \brief Sets the bytes that all tessellations of a time take, over all threads, and making them.
-        ///
-        /// Patches with the same levels share a tessellation.  If not all tessellations fit, patches that share one are made
-        /// in succession, so that few tessellations are made twice.
-        ///
-        /// Making a tessellation takes about 300 bytes a point: a face
-        /// may take a fourth of the bytes that are set, or 3 megabytes if these are more (4 with derivatives).  Faces that
-        /// take more come in sections.  A single cell is never cut: it has all points that finer edges of the face, or cells
-        /// beside it, have on its sides.
-        ///
-        /// The types of faces are not counted: they are in the cache, which has a bound of its own (SurfaceFactoryCache).
-        Options &SetMaxMemory(std::size_t bytes) {
-            _maxMemory = bytes;
-            return *this;
-        }
-        /// The number that was set.
-        std::size_t GetMaxMemory() const { return _maxMemory; }
-
-    private:
-        LevelTessellation::Options _tessellationOptions;
-        bool _hasDerivatives = false;
-        std::size_t _maxMemory = std::size_t(4) << 20;
-    };
-
     /// A stream of surfaces for vertex data, with the default options.
     ///
     /// \param factory  makes the surfaces; it must live as long
@@ -163,14 +219,16 @@ public:
     PatchStream(SurfaceFactory const &factory, PatchLevels levels)
         : PatchStream(factory, std::move(levels), Options()) {}
     /// Overload with options.
-    PatchStream(SurfaceFactory const &factory, PatchLevels levels, Options const &options);
+    PatchStream(SurfaceFactory const &factory, PatchLevels levels, Options const &options)
+        : PatchTessellations(factory, std::move(levels), nullptr, options) {}
 
     /// \brief A stream of the cells of trees.
     ///
     /// \param factory  makes the surfaces; it must live as long
     /// \param forest   of the same refiner, after MatchEdges(); it must live as long
     /// \param options  facets and memory
-    PatchStream(SurfaceFactory const &factory, CellForest const &forest, Options const &options);
+    PatchStream(SurfaceFactory const &factory, CellForest const &forest, Options const &options)
+        : PatchTessellations(factory, PatchLevels(0), &forest, options) {}
     /// Overload with default options.
     PatchStream(SurfaceFactory const &factory, CellForest const &forest)
         : PatchStream(factory, forest, Options()) {}
@@ -215,52 +273,6 @@ public:
     bool Run(REAL const meshPoints[], PointDescriptor const &meshPointDesc,
              std::vector<Values> const &values, std::vector<Index> const &faces, Sink const &sink,
              FarExt::CallStatus *status = nullptr) const;
-
-    /// The number of patches of a face: 1, or its sections.  The face is in range, and its levels or tree are valid.
-    int GetNumSections(Index face) const;
-    /// The tessellation of such a face as a whole, however much memory it takes.
-    LevelTessellation MakeTessellation(Index face) const;
-    /// The tessellation of a section, 0 ... GetNumSections(face) - 1, as the patches of the face have it.
-    LevelTessellation MakeTessellation(Index face, int section) const;
-
-    /// Takes the face and the tessellation of a patch, as a sink takes a patch.
-    using TessellationSink = std::function<bool(Index face, LevelTessellation const &tessellation)>;
-    /// \brief Hands out the tessellations of all patches, as Run() makes them, without points: for callers that
-    /// must know all patches before the first point.
-    ///
-    /// \return  as that of Run()
-    bool RunTessellations(TessellationSink const &sink, FarExt::CallStatus *status = nullptr) const;
-
-    /// \brief The sections of a face, as polygons in it.
-    ///
-    /// A *corner* is a vertex of one of these polygons, in the order of the boundary of the section's tessellation
-    /// (LevelTessellation::GetVertexPlace()).  Where sections meet, their corners have the same vertex.
-    struct SectionPolygons {
-        std::vector<int> firstCorners; ///< by section; then their end
-        std::vector<int> vertices;     ///< by corner
-        /// By vertex: the edge of the face on which it lies, for a vertex of the face the edge that begins there; -1: inside
-        /// the face.
-        std::vector<int> edges;
-        /// By vertex on an edge: the number of its point among those of LevelTessellation::GetEdgeCoords() of the whole
-        /// face; -1: it is the vertex of the face.
-        std::vector<int> edgePoints;
-    };
-    /// The sections of a face with more than one (GetNumSections()); empty for other faces.
-    SectionPolygons GetSectionPolygons(Index face) const;
-
-    /// The factory that was given.
-    SurfaceFactory const &GetFactory() const;
-    /// The levels that were given; with a forest: 0.
-    PatchLevels const &GetLevels() const;
-    /// The forest that was given, or null.
-    CellForest const *GetForest() const;
-    /// The options that were given.
-    Options const &GetOptions() const;
-
-private:
-    class Data;
-
-    std::shared_ptr<Data const> _data; // never null: copied where it is moved
 };
 
 extern template class PatchStream<float>;

@@ -63,6 +63,17 @@ std::shared_ptr<internal::TypeCache> getCache(SurfaceFactory::Options const &opt
 
 } // namespace
 
+SurfaceFactoryCache::SurfaceFactoryCache(std::size_t maxMemory)
+    : _types(std::make_shared<internal::TypeCache>(maxMemory)) {}
+
+SurfaceFactoryCache::~SurfaceFactoryCache() = default;
+
+std::size_t SurfaceFactoryCache::GetMaxMemory() const { return _types->GetMaxMemory(); }
+
+std::size_t SurfaceFactoryCache::GetMemory() const { return _types->GetMemory(); }
+
+std::size_t SurfaceFactoryCache::GetNumTypes() const { return _types->GetNumTypes(); }
+
 SurfaceFactory::SurfaceFactory(FarExt::TopologyRefiner const &refiner, Options options)
     : _refiner(refiner), _level(refiner.GetLevel(refiner.GetHexSchemeOptions().GetSurfaceLevel())),
       _faces(_level.GetLevel()), _numRefinements(refiner.GetNumRefinements()), _options(options),

@@ -3,8 +3,6 @@
 
 #include "cell/baseType.h"
 #include "cell/cellGrid.h"
-#include "stream/boundsData.h"
-#include "stream/forestData.h"
 
 #include "far_ext/vtr/hierarchy.h"
 #include "far_ext/vtr/parallel.h"
@@ -114,42 +112,47 @@ private:
 /// A base face with its control points, of three numbers each.
 class FaceToMeasure {
 public:
-    /// Sets it, the first three numbers of its points being read.
-    template <typename REAL>
-    void Set(BaseType const &type, REAL const *points, std::ptrdiff_t stride,
-             std::size_t numPoints) {
-        _type = type;
-        _points.resize(3 * numPoints);
-        for (std::size_t i = 0; i < _points.size(); i += 3, points += stride) {
-            for (std::size_t k = 0; k < 3; ++k) {
-                _points[i + k] = double(points[k]);
-            }
+    /// \param indices  which points are those of the face; null: all in turn
+    void Set(BaseFace const &face, PointArray const &points, Far::Index const *indices) {
+        _face = &face;
+        _points.resize(3 * std::size_t(face.numPoints));
+        for (int i = 0; i < face.numPoints; ++i) {
+            Vector3 const point = points[indices ? indices[i] : i];
+            std::copy(point.begin(), point.end(), &_points[3 * std::size_t(i)]);
         }
     }
 
+    BaseType const &GetType() const { return _face->type; }
+    FaceShape GetShape() const { return GetType().GetShape(_face->size); }
     void SetCells(RefinedCells &cells) const {
-        useType([&](auto const &type) { cells.SetBase(type, _points.data(), 3); });
+        if (PlainFaceType const *const plain = GetType().GetPlain()) {
+            cells.SetBase(*plain, _points.data(), 3);
+        } else {
+            cells.SetBase(*GetType(), _points.data(), 3);
+        }
     }
     void Sample(CellGrid &grid, std::vector<double> &samples) const {
-        useType([&](auto const &type) { grid.Sample(type, _points.data(), samples); });
+        grid.Sample(GetType(), _points.data(), samples);
     }
-    bool IsSharp() const { return _type.IsSharp(); }
     /// Whether the hull of its points is outside of the picture, which contains the surface.
     bool IsOutside(ViewGeometry const &geometry) const {
-        return geometry.IsOutside(_points.data(), 3, int(_points.size() / 3));
+        return geometry.IsOutside(_points.data(), 3, _face->numPoints);
+    }
+    /// An edge of it, with its points.
+    CellType::BorderItem const &SetEdge(int edge, CellValues &values) const {
+        CellType::BorderItem const &item =
+            GetType()->GetBorderItem(_face->GetTurns(), std::size_t(edge));
+        std::vector<double> points;
+        for (int const point : item.points) {
+            auto const first = _points.begin() + 3 * std::ptrdiff_t(point);
+            points.insert(points.end(), first, first + 3);
+        }
+        values.SetBase(*item.type, points.data(), 3);
+        return item;
     }
 
 private:
-    template <typename FUNCTION>
-    void useType(FUNCTION const &function) const {
-        if (PlainFaceType const *const plain = _type.GetPlain()) {
-            function(*plain);
-        } else {
-            function(*_type);
-        }
-    }
-
-    BaseType _type;
+    BaseFace const *_face = nullptr;
     std::vector<double> _points;
 };
 
@@ -268,17 +271,17 @@ private:
     CellFacing const &findFacing(Node &node) {
         if (getMeasures(node).facing < 0) {
             sample(node.isMeasuredFirst ? node : *node.parent);
-            CellFacing::Maker maker;
-            _grid->AddPolygons(_samples, node.isMeasuredFirst ? 0 : 1 + node.child, maker);
             std::size_t const cell = makeCell(node);
+            std::vector<Vector3> normals;
             for (int corner = 0; corner < _cells[cell].GetType().GetNumCorners(); ++corner) {
                 double du[3];
                 double dv[3];
                 _cells.EvaluateCorner(cell, corner, du, dv);
-                maker.AddNormal(Cross(ToVector3(du), ToVector3(dv)));
+                normals.push_back(Cross(ToVector3(du), ToVector3(dv)));
             }
             getMeasures(node).facing = int(_measures.facings.size());
-            _measures.facings.push_back(maker.Make());
+            _measures.facings.push_back(_grid->FindFacing(
+                _samples, node.isMeasuredFirst ? 0 : 1 + node.child, std::move(normals)));
         }
         return _measures.facings[std::size_t(getMeasures(node).facing)];
     }
@@ -295,7 +298,7 @@ private:
             _isSharp = _cells[cell].GetType().IsSharp();
             _grid->Sample(_cells[cell], _samples);
         } else {
-            _isSharp = _getBase().IsSharp();
+            _isSharp = _getBase().GetType().IsSharp();
             _getBase().Sample(*_grid, _samples);
         }
     }
@@ -344,18 +347,18 @@ private:
     CellGrid *_grid = nullptr; // of the cell that was sampled last
     std::size_t _sampled = std::size_t(-1);
     bool _isSharp = false; // whether something sharp is near that
-    RefinedCells &_cells = getCellsOfThread();
-    std::vector<double> &_samples = getSamplesOfThread();
+    // Of the thread, whose memory is kept for the next face.
+    struct Scratch {
+        static Scratch &Get() {
+            static thread_local Scratch scratch;
+            return scratch;
+        }
 
-    // Their memory is kept for the next face.
-    static RefinedCells &getCellsOfThread() {
-        static thread_local RefinedCells cells;
-        return cells;
-    }
-    static std::vector<double> &getSamplesOfThread() {
-        static thread_local std::vector<double> samples;
-        return samples;
-    }
+        RefinedCells cells;
+        std::vector<double> samples;
+    };
+    RefinedCells &_cells = Scratch::Get().cells;
+    std::vector<double> &_samples = Scratch::Get().samples;
 };
 
 /// A ball around some points.
@@ -462,6 +465,89 @@ private:
 
 } // namespace
 
+/// The data of a ViewBounds.  Several threads may work at the measures of different faces.
+struct BoundsData {
+    using Index = ViewBounds::Index;
+
+    BoundsData(SurfaceFactory const &ofMesh, ViewBounds::Options const &ofBounds)
+        : factory(ofMesh), options(ofBounds), faces(std::size_t(ofMesh.GetNumFaces())) {}
+
+    /// Forgets what depends on positions that are not those of the last call.
+    void SetPoints(PointArray const &meshPoints);
+    /// Counts what a face has come to have, and forgets it if that is too much.
+    void Trim(Index face, std::size_t memoryBefore);
+    /// Forgets all.
+    void Clear();
+
+    SurfaceFactory const &factory;
+    ViewBounds::Options const options;
+    std::vector<Vector3> points; ///< the positions, once there are some
+    std::vector<FaceMeasures> faces;
+    std::atomic<std::size_t> memory{0}; ///< that measures take, in bytes
+
+private:
+    void forget(std::vector<char> const &isChanged);
+};
+
+void BoundsData::Clear() {
+    points.clear();
+    for (FaceMeasures &face : faces) {
+        face = {};
+    }
+    memory = 0;
+}
+
+void BoundsData::SetPoints(PointArray const &meshPoints) {
+    auto const numVertices = std::size_t(factory.GetLevel().GetNumVertices());
+    bool const hadPoints = !points.empty();
+    std::vector<char> isChanged(numVertices);
+    points.resize(numVertices);
+    FarExt::internal::ParallelFor(Index(numVertices), [&](Index vertex) {
+        Vector3 const point = meshPoints[vertex];
+        Vector3 &last = points[std::size_t(vertex)];
+        isChanged[std::size_t(vertex)] = point != last;
+        last = point;
+    });
+    if (hadPoints) {
+        forget(isChanged);
+    }
+}
+
+// Forgets the faces that have a control point which has changed.
+void BoundsData::forget(std::vector<char> const &isChanged) {
+    if (std::find(isChanged.begin(), isChanged.end(), char(true)) == isChanged.end()) {
+        return;
+    }
+    constexpr Index kFacesOfRange = 64;
+    FarExt::internal::ParallelForRange(
+        factory.GetNumFaces(), [] { return Surface<float>(); },
+        [&](Surface<float> &surface, Index begin, Index end) {
+            for (Index face = begin; face < end; ++face) {
+                FaceMeasures &measures = faces[std::size_t(face)];
+                if (measures.cells.empty()) {
+                    continue;
+                }
+                if (!factory.InitVertexSurface(face, &surface) ||
+                    std::any_of(surface.GetFace().GetPoints(), surface.GetFace().GetTurns(),
+                                [&](Index point) { return isChanged[std::size_t(point)]; })) {
+                    memory -= measures.GetMemory();
+                    measures = {};
+                }
+            }
+        },
+        kFacesOfRange);
+}
+
+void BoundsData::Trim(Index face, std::size_t memoryBefore) {
+    FaceMeasures &measures = faces[std::size_t(face)];
+    std::size_t const memoryNow = measures.GetMemory();
+    if (memoryNow != memoryBefore &&
+        (memory += memoryNow - memoryBefore) > options.GetMaxMemory()) {
+        memory -= memoryNow;
+        measures = {};
+    }
+}
+
 /// The data of a View.
 struct ViewData {
     Camera camera;
@@ -491,72 +577,55 @@ void refineTree(ViewData const &view, CellTree &tree,
 }
 
 // The surface of one face after the other, with its control points.
-template <typename REAL>
 class FaceSurface {
 public:
-    FaceSurface(SurfaceFactory const &factory, REAL const *meshPoints, std::ptrdiff_t stride)
-        : _factory(factory), _meshPoints(meshPoints), _stride(stride) {}
+    FaceSurface(SurfaceFactory const &factory, PointArray const &meshPoints)
+        : _factory(factory), _meshPoints(meshPoints) {}
 
-    // Whether there is one.
-    bool Init(Far::Index face) {
+    // Null where there is none.
+    FaceToMeasure const *Find(Far::Index face) {
         if (face != _face) {
             _face = face;
             _surface.Clear();
             if (_factory.TryInit(face, FarExt::Interpolation::Vertex, -1, _surface).IsOk()) {
-                auto const numPoints = std::size_t(_surface.GetNumControlPoints());
-                _points.resize(3 * numPoints);
-                _surface.GatherControlPoints(_meshPoints, {3, int(_stride)}, _points.data(), 3);
-                _base.Set(_surface.GetFace().type, _points.data(), 3, numPoints);
+                _base.Set(_surface.GetFace(), _meshPoints, _surface.GetFace().GetPoints());
             }
         }
-        return _surface.IsValid();
+        return _surface.IsValid() ? &_base : nullptr;
     }
-    Surface<REAL> const &Get() const { return _surface; }
-    REAL const *GetControlPoints() const { return _points.data(); }
-    FaceToMeasure const &GetBase() const { return _base; }
 
 private:
     SurfaceFactory const &_factory;
-    REAL const *const _meshPoints;
-    std::ptrdiff_t const _stride;
+    PointArray const _meshPoints;
     Far::Index _face = Far::INDEX_INVALID;
-    Surface<REAL> _surface;
-    std::vector<REAL> _points;
+    Surface<float> _surface;
     FaceToMeasure _base;
 };
 
 // View::MakeEdge().
-template <typename REAL>
-Polyline makeEdge(ViewData const &view, Surface<REAL> const &surface, int edge,
-                  REAL const *controlPoints, std::ptrdiff_t stride, Polyline const *previous) {
+Polyline makePolyline(ViewData const &view, FaceToMeasure const &face, int edge,
+                      Polyline const *previous) {
     if (!view.isValid) {
         return Polyline();
     }
-    CellType::BorderItem const &item =
-        surface.GetFace().type->GetBorderItem(surface.GetFace().GetTurns(), std::size_t(edge));
-    std::vector<double> points;
-    for (int const point : item.points) {
-        REAL const *const from = controlPoints + std::ptrdiff_t(point) * stride;
-        points.insert(points.end(), from, from + 3);
-    }
     CellValues values;
-    values.SetBase(*item.type, points.data(), 3);
+    bool const isReversed = face.SetEdge(edge, values).isReversed;
     Polyline last; // in the direction of the item
     if (previous) {
-        last = item.isReversed ? previous->GetReversed() : *previous;
+        last = isReversed ? previous->GetReversed() : *previous;
     }
     Polyline polyline;
     Polyline::FromPlaces(EdgeMaker(view.geometry, view.options, last).Make(values), &polyline);
-    return item.isReversed ? polyline.GetReversed() : polyline;
+    return isReversed ? polyline.GetReversed() : polyline;
 }
 
 // Counts the cells of a forest that are not refined.
-View::Counts countCells(ForestData const &forest, int maxLevel,
+View::Counts countCells(CellForest const &forest, int maxLevel,
                         std::vector<std::vector<CellVisibility>> const &visibility) {
     View::Counts counts;
     counts.cellsByLevel.assign(std::size_t(maxLevel) + 1, 0);
     for (std::size_t face = 0; face < visibility.size(); ++face) {
-        CellTree const &tree = forest.trees[face];
+        CellTree const &tree = forest.GetTree(int(face));
         std::vector<CellVisibility> const &found = visibility[face];
         for (std::size_t cell = 0; cell < found.size(); ++cell) {
             if (!tree.IsRefined(int(cell))) {
@@ -569,107 +638,22 @@ View::Counts countCells(ForestData const &forest, int maxLevel,
     return counts;
 }
 
-// View::MakeForest().
-template <typename REAL>
-CellForest makeForest(ViewData const &view, SurfaceFactory const &factory, BoundsData *bounds,
-                      REAL const *meshPoints, std::ptrdiff_t stride, CellForest const *previous,
-                      View::Counts *counts, FarExt::CallStatus *status) {
-    using Index = Far::Index;
-    FarExt::SurfaceFaces const &faces = factory.GetFaces();
-    // Diagonals between surface faces are infinitely sharp.
-    auto const isInfSharp = [&](Index edge) {
-        return edge >= factory.GetLevel().GetNumEdges() || factory.GetLevel().IsEdgeInfSharp(edge);
-    };
-    CellForest result(factory.GetMesh());
-    ForestData &forest = result.GetData();
-    ForestData const *const last = previous && previous->GetNumFaces() == forest.GetNumFaces()
-                                       ? &previous->GetData()
-                                       : nullptr;
-    bool const hasLastEdges = last && last->edges.size() == forest.edges.size();
-    std::vector<std::vector<CellVisibility>> visibility(counts ? std::size_t(forest.GetNumFaces())
-                                                               : 0);
-    // A tree grows in the memory of the last one, and is kept in no more than it takes.
-    struct State {
-        FaceSurface<REAL> surface;
-        FaceMeasures measures;
-        CellTree tree;
-    };
-    constexpr int kTriangle = 3;
-    std::atomic<Index> firstWithout = forest.GetNumFaces(); // without a surface
-    constexpr Index kFacesOfRange = 16;
-    FarExt::internal::ParallelForRange(
-        forest.GetNumFaces(),
-        [&] {
-            return State{{factory, meshPoints, stride}, {}, CellTree(kTriangle)};
-        },
-        [&](State &state, Index begin, Index end) {
-            for (Index face = begin; face < end; ++face) {
-                state.measures.Clear();
-                FaceMeasures &measures = bounds ? bounds->faces[std::size_t(face)] : state.measures;
-                if (measures.cells.empty() && !state.surface.Init(face)) {
-                    Index first = firstWithout;
-                    while (!faces.IsHole(face) && face < first &&
-                           !firstWithout.compare_exchange_weak(first, face)) {
-                    }
-                    continue;
-                }
-                std::size_t const memory = measures.GetMemory();
-                auto const getBase = [&]() -> FaceToMeasure const & {
-                    state.surface.Init(face);
-                    return state.surface.GetBase();
-                };
-                CellTree &tree = forest.trees[std::size_t(face)];
-                state.tree = tree;
-                refineTree(view, state.tree, std::cref(getBase), measures,
-                           last ? &last->GetTree(face) : nullptr,
-                           counts ? &visibility[std::size_t(face)] : nullptr);
-                if (state.tree.IsRefined(0)) {
-                    tree = state.tree;
-                }
-                if (bounds) {
-                    bounds->Trim(face, memory);
-                }
-                for (int local = 0; local < tree.GetFaceSize(); ++local) {
-                    auto const [edge, isReversed] = faces.GetEdge(face, local);
-                    // The first of its faces that has a surface makes an edge, since holes have none.
-                    if (!isInfSharp(edge) ||
-                        (isReversed && factory.FaceHasLimitSurface(faces.GetSide(edge, 0).face)) ||
-                        !state.surface.Init(face)) {
-                        continue;
-                    }
-                    Polyline lastEdge; // empty where there is none
-                    if (hasLastEdges) {
-                        Polyline const &ofEdge = last->edges[std::size_t(edge)];
-                        lastEdge = isReversed ? ofEdge.GetReversed() : ofEdge;
-                    }
-                    Polyline made = makeEdge(view, state.surface.Get(), local,
-                                             state.surface.GetControlPoints(), 3, &lastEdge);
-                    forest.edges[std::size_t(edge)] =
-                        isReversed ? made.GetReversed() : std::move(made);
-                }
-            }
-        },
-        kFacesOfRange);
-    result.MatchEdges();
-    if (status && !view.isValid) {
-        *status = FarExt::internal::Failure(
-            FarExt::StatusCode::InvalidArgument,
-            "the view is invalid: its camera has no picture, or an option is out of range");
-    } else if (status) {
-        Surface<REAL> none;
-        *status = firstWithout < forest.GetNumFaces()
-                      ? factory.TryInit(firstWithout, FarExt::Interpolation::Vertex, -1, none)
-                      : FarExt::CallStatus();
-    }
-    if (counts) {
-        *counts = countCells(forest, view.isValid ? view.options.GetMaxLevel() : 0, visibility);
-    }
-    return result;
-}
-
 } // namespace
 
 } // namespace internal
+
+ViewBounds::ViewBounds(SurfaceFactory const &factory, Options options)
+    : _data(std::make_unique<internal::BoundsData>(factory, options)) {}
+
+ViewBounds::~ViewBounds() = default;
+
+SurfaceFactory const &ViewBounds::GetFactory() const { return _data->factory; }
+
+ViewBounds::Options const &ViewBounds::GetOptions() const { return _data->options; }
+
+std::size_t ViewBounds::GetMemory() const { return _data->memory; }
+
+void ViewBounds::Clear() { _data->Clear(); }
 
 View::View(Camera const &camera, Options options) {
     auto const isNumber = [](double number) { return std::isfinite(number) && number >= 0; };
@@ -690,33 +674,27 @@ Camera const &View::GetCamera() const { return _data->camera; }
 
 View::Options const &View::GetOptions() const { return _data->options; }
 
-template <typename REAL>
-CellTree View::MakeTree(Surface<REAL> const &surface, REAL const controlPoints[],
-                        typename Surface<REAL>::PointDescriptor const &pointDesc,
+CellTree View::makeTree(BaseFace const &face, internal::PointArray const &controlPoints,
                         CellTree const *previous, std::vector<CellVisibility> *visibility) const {
-    internal::FaceMeasures measures;
     internal::FaceToMeasure base;
-    base.Set(surface.GetFace().type, controlPoints, pointDesc.stride,
-             std::size_t(surface.GetNumControlPoints()));
-    CellTree tree(surface.GetFaceShape());
+    base.Set(face, controlPoints, nullptr);
+    internal::FaceMeasures measures;
+    CellTree tree(base.GetShape());
     internal::refineTree(
         *_data, tree, [&]() -> internal::FaceToMeasure const & { return base; }, measures, previous,
         visibility);
     return tree;
 }
 
-template <typename REAL>
-Polyline View::MakeEdge(Surface<REAL> const &surface, int edge, REAL const controlPoints[],
-                        typename Surface<REAL>::PointDescriptor const &pointDesc,
+Polyline View::makeEdge(BaseFace const &face, int edge, internal::PointArray const &controlPoints,
                         Polyline const *previous) const {
-    return internal::makeEdge(*_data, surface, edge, controlPoints, pointDesc.stride, previous);
+    internal::FaceToMeasure base;
+    base.Set(face, controlPoints, nullptr);
+    return internal::makePolyline(*_data, base, edge, previous);
 }
 
-template <typename REAL>
-int View::FindLevels(Surface<REAL> const &surface, REAL const controlPoints[],
-                     typename Surface<REAL>::PointDescriptor const &pointDesc, int levels[]) const {
-    CellTree const tree = MakeTree(surface, controlPoints, pointDesc);
-    int const size = surface.GetFaceSize();
+int View::findLevels(CellTree const &tree, int levels[]) {
+    int const size = tree.GetFaceSize();
     std::fill(levels, levels + size, 0);
     for (int cell = 1; cell < tree.GetNumCells(); ++cell) {
         auto const addLevel = [&](int edge) {
@@ -733,51 +711,101 @@ int View::FindLevels(Surface<REAL> const &surface, REAL const controlPoints[],
     return size + 1;
 }
 
-template <typename REAL>
-CellForest View::MakeForest(SurfaceFactory const &factory, REAL const meshPoints[],
-                            typename Surface<REAL>::PointDescriptor const &pointDesc,
-                            CellForest const *previous, Counts *counts,
-                            FarExt::CallStatus *status) const {
-    return internal::makeForest(*_data, factory, nullptr, meshPoints, pointDesc.stride, previous,
-                                counts, status);
+CellForest View::makeForest(SurfaceFactory const &factory, ViewBounds *viewBounds,
+                            internal::PointArray const &meshPoints, CellForest const *previous,
+                            Counts *counts, FarExt::CallStatus *status) const {
+    using Index = Far::Index;
+    FarExt::SurfaceFaces const &faces = factory.GetFaces();
+    // Diagonals between surface faces are infinitely sharp.
+    auto const isInfSharp = [&](Index edge) {
+        return edge >= factory.GetLevel().GetNumEdges() || factory.GetLevel().IsEdgeInfSharp(edge);
+    };
+    internal::BoundsData *const bounds = viewBounds ? &viewBounds->GetData() : nullptr;
+    if (bounds) {
+        bounds->SetPoints(meshPoints);
+    }
+    CellForest forest(factory.GetMesh());
+    CellForest const *const last =
+        previous && previous->GetNumFaces() == forest.GetNumFaces() ? previous : nullptr;
+    bool const hasLastEdges = last && last->GetFaces().GetNumEdges() == faces.GetNumEdges();
+    std::vector<std::vector<CellVisibility>> visibility(counts ? std::size_t(forest.GetNumFaces())
+                                                               : 0);
+    // A tree grows in the memory of the last one, and is kept in no more than it takes.
+    struct State {
+        internal::FaceSurface surface;
+        internal::FaceMeasures measures;
+        CellTree tree;
+    };
+    constexpr int kTriangle = 3;
+    std::atomic<Index> firstWithout = forest.GetNumFaces(); // without a surface
+    constexpr Index kFacesOfRange = 16;
+    FarExt::internal::ParallelForRange(
+        forest.GetNumFaces(),
+        [&] {
+            return State{{factory, meshPoints}, {}, CellTree(kTriangle)};
+        },
+        [&](State &state, Index begin, Index end) {
+            for (Index face = begin; face < end; ++face) {
+                state.measures.Clear();
+                internal::FaceMeasures &measures =
+                    bounds ? bounds->faces[std::size_t(face)] : state.measures;
+                if (measures.cells.empty() && !state.surface.Find(face)) {
+                    Index first = firstWithout;
+                    while (!faces.IsHole(face) && face < first &&
+                           !firstWithout.compare_exchange_weak(first, face)) {
+                    }
+                    continue;
+                }
+                std::size_t const memory = measures.GetMemory();
+                auto const getBase = [&]() -> internal::FaceToMeasure const & {
+                    return *state.surface.Find(face);
+                };
+                state.tree = forest.GetTree(face);
+                internal::refineTree(*_data, state.tree, std::cref(getBase), measures,
+                                     last ? &last->GetTree(face) : nullptr,
+                                     counts ? &visibility[std::size_t(face)] : nullptr);
+                if (state.tree.IsRefined(0)) {
+                    forest.SetTree(face, state.tree);
+                }
+                if (bounds) {
+                    bounds->Trim(face, memory);
+                }
+                for (int local = 0; local < state.tree.GetFaceSize(); ++local) {
+                    auto const [edge, isReversed] = faces.GetEdge(face, local);
+                    // The first of its faces that has a surface makes an edge, since holes have none.
+                    if (!isInfSharp(edge) ||
+                        (isReversed && factory.FaceHasLimitSurface(faces.GetSide(edge, 0).face)) ||
+                        !state.surface.Find(face)) {
+                        continue;
+                    }
+                    Polyline lastEdge; // empty where there is none
+                    if (hasLastEdges) {
+                        Polyline const &ofEdge = last->GetEdge(edge);
+                        lastEdge = isReversed ? ofEdge.GetReversed() : ofEdge;
+                    }
+                    Polyline made =
+                        internal::makePolyline(*_data, *state.surface.Find(face), local, &lastEdge);
+                    forest.SetEdge(edge, isReversed ? made.GetReversed() : std::move(made));
+                }
+            }
+        },
+        kFacesOfRange);
+    forest.MatchEdges();
+    if (status && !IsValid()) {
+        *status = FarExt::internal::Failure(
+            FarExt::StatusCode::InvalidArgument,
+            "the view is invalid: its camera has no picture, or an option is out of range");
+    } else if (status) {
+        Surface<float> none;
+        *status = firstWithout < forest.GetNumFaces()
+                      ? factory.TryInit(firstWithout, FarExt::Interpolation::Vertex, -1, none)
+                      : FarExt::CallStatus();
+    }
+    if (counts) {
+        *counts =
+            internal::countCells(forest, IsValid() ? GetOptions().GetMaxLevel() : 0, visibility);
+    }
+    return forest;
 }
-
-template <typename REAL>
-CellForest View::MakeForest(ViewBounds &bounds, REAL const meshPoints[],
-                            typename Surface<REAL>::PointDescriptor const &pointDesc,
-                            CellForest const *previous, Counts *counts,
-                            FarExt::CallStatus *status) const {
-    internal::BoundsData &data = bounds.GetData();
-    data.SetPoints(meshPoints, pointDesc.stride);
-    return internal::makeForest(*_data, data.factory, &data, meshPoints, pointDesc.stride, previous,
-                                counts, status);
-}
-
-template CellTree View::MakeTree(Surface<float> const &, float const[],
-                                 Surface<float>::PointDescriptor const &, CellTree const *,
-                                 std::vector<CellVisibility> *) const;
-template CellTree View::MakeTree(Surface<double> const &, double const[],
-                                 Surface<double>::PointDescriptor const &, CellTree const *,
-                                 std::vector<CellVisibility> *) const;
-template Polyline View::MakeEdge(Surface<float> const &, int, float const[],
-                                 Surface<float>::PointDescriptor const &, Polyline const *) const;
-template Polyline View::MakeEdge(Surface<double> const &, int, double const[],
-                                 Surface<double>::PointDescriptor const &, Polyline const *) const;
-template int View::FindLevels(Surface<float> const &, float const[],
-                              Surface<float>::PointDescriptor const &, int[]) const;
-template int View::FindLevels(Surface<double> const &, double const[],
-                              Surface<double>::PointDescriptor const &, int[]) const;
-template CellForest View::MakeForest(SurfaceFactory const &, float const[],
-                                     Surface<float>::PointDescriptor const &, CellForest const *,
-                                     Counts *, FarExt::CallStatus *) const;
-template CellForest View::MakeForest(ViewBounds &, float const[],
-                                     Surface<float>::PointDescriptor const &, CellForest const *,
-                                     Counts *, FarExt::CallStatus *) const;
-template CellForest View::MakeForest(SurfaceFactory const &, double const[],
-                                     Surface<double>::PointDescriptor const &, CellForest const *,
-                                     Counts *, FarExt::CallStatus *) const;
-template CellForest View::MakeForest(ViewBounds &, double const[],
-                                     Surface<double>::PointDescriptor const &, CellForest const *,
-                                     Counts *, FarExt::CallStatus *) const;
 
 } // namespace OpenSubdivHex::BfrExt

@@ -151,7 +151,9 @@ public:
     CellTree MakeTree(Surface<REAL> const &surface, REAL const controlPoints[],
                       typename Surface<REAL>::PointDescriptor const &pointDesc,
                       CellTree const *previous = nullptr,
-                      std::vector<CellVisibility> *visibility = nullptr) const;
+                      std::vector<CellVisibility> *visibility = nullptr) const {
+        return makeTree(surface.GetFace(), {controlPoints, pointDesc.stride}, previous, visibility);
+    }
 
     /// \brief Makes the polyline of a sharp edge or boundary, which is as close to the curve as facets
     /// are to the surface, and the same from both sides.
@@ -166,7 +168,9 @@ public:
     template <typename REAL>
     Polyline MakeEdge(Surface<REAL> const &surface, int edge, REAL const controlPoints[],
                       typename Surface<REAL>::PointDescriptor const &pointDesc,
-                      Polyline const *previous = nullptr) const;
+                      Polyline const *previous = nullptr) const {
+        return makeEdge(surface.GetFace(), edge, {controlPoints, pointDesc.stride}, previous);
+    }
 
     /// \brief Writes one level for each edge and one for the inside of a face, as LevelTessellation takes:
     /// the highest that MakeTree() has there.
@@ -175,7 +179,9 @@ public:
     /// \return  how many they are
     template <typename REAL>
     int FindLevels(Surface<REAL> const &surface, REAL const controlPoints[],
-                   typename Surface<REAL>::PointDescriptor const &pointDesc, int levels[]) const;
+                   typename Surface<REAL>::PointDescriptor const &pointDesc, int levels[]) const {
+        return findLevels(MakeTree(surface, controlPoints, pointDesc), levels);
+    }
 
     /// \brief Counts of faces and cells of a mesh.
     struct Counts {
@@ -200,7 +206,10 @@ public:
     CellForest MakeForest(SurfaceFactory const &factory, REAL const meshPoints[],
                           typename Surface<REAL>::PointDescriptor const &pointDesc,
                           CellForest const *previous = nullptr, Counts *counts = nullptr,
-                          FarExt::CallStatus *status = nullptr) const;
+                          FarExt::CallStatus *status = nullptr) const {
+        return makeForest(factory, nullptr, {meshPoints, pointDesc.stride}, previous, counts,
+                          status);
+    }
     /// \brief Overload that uses, and keeps for the next view, how flat cells are.
     ///
     /// \param bounds  of the mesh
@@ -208,9 +217,23 @@ public:
     CellForest MakeForest(ViewBounds &bounds, REAL const meshPoints[],
                           typename Surface<REAL>::PointDescriptor const &pointDesc,
                           CellForest const *previous = nullptr, Counts *counts = nullptr,
-                          FarExt::CallStatus *status = nullptr) const;
+                          FarExt::CallStatus *status = nullptr) const {
+        return makeForest(bounds.GetFactory(), &bounds, {meshPoints, pointDesc.stride}, previous,
+                          counts, status);
+    }
 
 private:
+    using BaseFace = internal::KeptFace<internal::BaseType>;
+
+    CellTree makeTree(BaseFace const &face, internal::PointArray const &controlPoints,
+                      CellTree const *previous, std::vector<CellVisibility> *visibility) const;
+    Polyline makeEdge(BaseFace const &face, int edge, internal::PointArray const &controlPoints,
+                      Polyline const *previous) const;
+    static int findLevels(CellTree const &tree, int levels[]);
+    CellForest makeForest(SurfaceFactory const &factory, ViewBounds *bounds,
+                          internal::PointArray const &meshPoints, CellForest const *previous,
+                          Counts *counts, FarExt::CallStatus *status) const;
+
     std::shared_ptr<internal::ViewData const> _data; // never null: copied where it is moved
 };
 

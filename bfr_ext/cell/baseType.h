@@ -15,7 +15,7 @@ public:
     explicit BaseType(PlainFaceType const &plain) : _plain(&plain) {}
 
     explicit operator bool() const { return _type || _plain; }
-    CellType const &operator*() const;
+    CellType const &operator*() const { return _plain ? _plain->Get() : *_type; }
     CellType const *operator->() const { return &**this; }
     bool IsInLattice() const { return _type ? _type->IsInLattice() : _plain->IsInLattice(); }
     /// The shape of a face of \p size vertices.

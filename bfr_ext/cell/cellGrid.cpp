@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <numeric>
 
 namespace OpenSubdivHex::BfrExt::internal {
 
@@ -21,9 +22,14 @@ constexpr double kExpected = 0.22;
 } // namespace
 
 CellGrid::CellGrid(FaceShape shape)
-    : _shape(shape), _places(shape, kNumSteps), _plan(shape, kNumSteps) {
+    : _shape(shape), _places(shape, kNumSteps),
+      _plan(shape, kNumSteps, _places.GetAll(), CellPlan::Use::AllPoints, true),
+      _planOfBase(shape, kNumSteps, _places.GetAll(), CellPlan::Use::AllPoints, shape.size == 0) {
     auto const &corners = HalfCell::kCorners;
-    add({shape.size > 0, 0, 1, {corners[0], corners[1], corners[2], corners[3]}}, kNumSteps);
+    add(shape.size > 0
+            ? CellOutline<Pair>::MakeWhole(1)
+            : CellOutline<Pair>::MakeHalf(0, {corners[0], corners[1], corners[2], corners[3]}),
+        kNumSteps);
 }
 
 CellGrid &CellGrid::Get(FaceShape shape) {
@@ -32,21 +38,16 @@ CellGrid &CellGrid::Get(FaceShape shape) {
 }
 
 // Adds a cell, and those that some steps make of it.
-int CellGrid::add(Shape const &shape, int numSteps) {
+int CellGrid::add(CellOutline<Pair> const &outline, int numSteps) {
     std::size_t const number = _cells.size();
     _cells.emplace_back();
     _cells[number].factor = numSteps == kNumSteps ? kFactorOfCell : kFactorOfChildren;
-    int const numCorners = shape.isWhole ? _shape.size : 4;
-    for (int i = 0; i < numCorners; ++i) {
-        int const sample = int(_places.Find(
-            shape.isWhole ? PlaceOnEdge<Pair>(_shape, i, shape.scale, 0.0)
-                          : LeafPlaces::Place{shape.sector, shape.corners[std::size_t(i)]}));
-        _cells[number].corners.push_back(sample);
+    for (int i = 0; i < outline.GetNumCorners(_shape); ++i) {
+        _cells[number].corners.push_back(int(_places.Find(outline.GetCorner(_shape, i))));
     }
     _cells[number].samples = _cells[number].corners;
-    int const numChildren = shape.isWhole ? _shape.GetNumSectors() + 1 : 4;
-    for (int i = 0; numSteps > 0 && i < numChildren; ++i) {
-        int const child = add(getChild(shape, i), numSteps - 1);
+    for (int i = 0; numSteps > 0 && i < outline.GetNumChildren(_shape); ++i) {
+        int const child = add(outline.GetChild(_shape, i), numSteps - 1);
         Cell &cell = _cells[number];
         cell.children.push_back(child);
         std::vector<int> const &samples = _cells[std::size_t(child)].samples;
@@ -58,81 +59,53 @@ int CellGrid::add(Shape const &shape, int numSteps) {
     return int(number);
 }
 
-CellGrid::Shape CellGrid::getChild(Shape const &shape, int child) const {
-    if (!shape.isWhole) {
-        return {false, shape.sector, 0,
-                HalfCell::GetCornersOfChild(shape.corners, std::size_t(child))};
-    }
-    if (child == 0) {
-        return {true, 0, shape.scale / 2, {}};
-    }
-    return {false, child - 1 + _shape.GetFirstSector(), 0,
-            HalfCell::GetCornersAtEdge<Pair>(shape.scale)};
-}
-
 void CellGrid::Sample(CellValues const &cell, std::vector<double> &samples) {
-    samples.resize(3 * _places.GetSize());
-    _evaluator.Evaluate(cell.GetType(), _plan, 3, cell.GetPoint(0),
-                        std::ptrdiff_t(cell.GetPaddedSize()), samples.data(), 3);
+    sample(cell.GetPoint(0), cell.GetPaddedSize(), cell.GetNumPoints(), samples,
+           [&](float *const *results) {
+               _evaluator.Evaluate(cell.GetType(), _plan, 3, _points.data(), 3, results, 3);
+           });
 }
 
-void CellGrid::Sample(CellType const &type, double const *controlPoints,
+void CellGrid::Sample(BaseType const &type, double const *controlPoints,
                       std::vector<double> &samples) {
-    sampleBase(controlPoints, type.GetNumPoints(), samples, [&] {
-        _baseEvaluator.Evaluate(type, getPlan(type.IsInLattice()), 3, _basePoints.data(), 3,
-                                _baseSamples.data(), 3);
+    PlainFaceType const *const plain = type.GetPlain();
+    int const numPoints = plain ? plain->GetNumPoints() : type->GetNumPoints();
+    sample(controlPoints, 3, numPoints, samples, [&](float *const *results) {
+        if (plain) {
+            _ringValues.Set(plain->GetRings().GetRings(), nullptr,
+                            {_points.data(), 3, 3, std::size_t(numPoints), nullptr});
+            _evaluator.Evaluate(*plain, _ringValues, _planOfBase, results, 3);
+        } else {
+            _evaluator.Evaluate(*type, type.IsInLattice() ? _plan : _planOfBase, 3, _points.data(),
+                                3, results, 3);
+        }
     });
 }
 
-void CellGrid::Sample(PlainFaceType const &type, double const *controlPoints,
-                      std::vector<double> &samples) {
-    sampleBase(controlPoints, type.GetNumPoints(), samples, [&] {
-        _ringValues.Set(type.GetRings().GetRings(), nullptr,
-                        {_basePoints.data(), 3, 3, std::size_t(type.GetNumPoints()), nullptr});
-        _baseEvaluator.Evaluate(type, _ringValues, getPlan(false), _baseSamples.data(), 3);
-    });
-}
-
-// Has evaluate() make the samples from the points in single precision.
+// Has evaluate(results) make the samples from the points in single precision.
 template <typename FUNCTION>
-void CellGrid::sampleBase(double const *controlPoints, int numPoints, std::vector<double> &samples,
-                          FUNCTION const &evaluate) {
-    Vector3 const origin = ToVector3(controlPoints);
-    std::size_t const numNumbers = 3 * std::size_t(numPoints);
+void CellGrid::sample(double const *points, std::size_t stride, int numPoints,
+                      std::vector<double> &samples, FUNCTION const &evaluate) {
+    Vector3 const origin = ToVector3(points);
+    auto const forEachNumber = [&](auto const &function) {
+        for (std::size_t i = 0; i < std::size_t(numPoints); ++i) {
+            for (std::size_t k = 0; k < 3; ++k) {
+                function(3 * i + k, points[i * stride + k] - origin[k]);
+            }
+        }
+    };
     double size = std::numeric_limits<double>::min();
-    for (std::size_t i = 0; i < numNumbers; i += 3) {
-        for (std::size_t k = 0; k < 3; ++k) {
-            size = std::max(size, std::abs(controlPoints[i + k] - origin[k]));
-        }
-    }
+    forEachNumber([&](std::size_t, double number) { size = std::max(size, std::abs(number)); });
     double const scale = 1 / size;
-    _basePoints.resize(numNumbers);
-    for (std::size_t i = 0; i < numNumbers; i += 3) {
-        for (std::size_t k = 0; k < 3; ++k) {
-            _basePoints[i + k] = float((controlPoints[i + k] - origin[k]) * scale);
-        }
+    _points.resize(3 * std::size_t(numPoints));
+    forEachNumber([&](std::size_t i, double number) { _points[i] = float(number * scale); });
+    _samples.resize(3 * _places.GetSize());
+    float *const results[1] = {_samples.data()};
+    evaluate(results);
+    samples.resize(_samples.size());
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+        samples[i] = origin[i % 3] + size * double(_samples[i]);
     }
-    _baseSamples.resize(3 * _places.GetSize());
-    evaluate();
-    samples.resize(_baseSamples.size());
-    for (std::size_t i = 0; i < samples.size(); i += 3) {
-        for (std::size_t k = 0; k < 3; ++k) {
-            samples[i + k] = origin[k] + size * double(_baseSamples[i + k]);
-        }
-    }
-}
-
-CellPlan const &CellGrid::getPlan(bool isInLattice) {
-    std::unique_ptr<CellPlan const> &plan = _plansOfBase[isInLattice ? 1 : 0];
-    if (!plan) {
-        std::vector<LeafPlaces::Place> places;
-        for (std::size_t i = 0; i < _places.GetSize(); ++i) {
-            places.push_back(_places[i]);
-        }
-        plan = std::make_unique<CellPlan const>(_shape, kNumSteps, places, CellPlan::Use::AllPoints,
-                                                isInLattice);
-    }
-    return *plan;
 }
 
 void CellGrid::measure(std::vector<double> const &samples, Cell const &cell,
@@ -191,10 +164,14 @@ void CellGrid::MeasureChildren(std::vector<double> const &samples, CellMeasures 
     }
 }
 
-void CellGrid::AddPolygons(std::vector<double> const &samples, int cell,
-                           CellFacing::Maker &maker) const {
+CellFacing CellGrid::FindFacing(std::vector<double> const &samples, int cell,
+                                std::vector<Vector3> normals) const {
+    // A margin for angles between the polygons, and for angles of normals within each.
+    constexpr double kFactor = 3;
+    Vector3 sum = {};
+    std::vector<Vector3> places;
     std::vector<double> corners;
-    auto const add = [&](auto const &self, Cell const &part) -> void {
+    auto const addPolygons = [&](auto const &self, Cell const &part) -> void {
         for (int const child : part.children) {
             self(self, _cells[std::size_t(child)]);
         }
@@ -203,11 +180,38 @@ void CellGrid::AddPolygons(std::vector<double> const &samples, int cell,
             for (int const corner : part.corners) {
                 double const *const p = &samples[3 * std::size_t(corner)];
                 corners.insert(corners.end(), p, p + 3);
+                places.push_back(ToVector3(p));
             }
-            maker.Add(corners);
+            normals.push_back(FindArea(corners));
+            sum = Add(sum, normals.back());
         }
     };
-    add(add, _cells[cell == 0 ? 0 : std::size_t(_cells[0].children[std::size_t(cell) - 1])]);
+    addPolygons(addPolygons,
+                _cells[cell == 0 ? 0 : std::size_t(_cells[0].children[std::size_t(cell) - 1])]);
+    CellFacing facing;
+    double const length = GetLength(sum);
+    if (!(length > 0)) {
+        return facing;
+    }
+    facing.normal = Scale(sum, 1 / length);
+    facing.center = Scale(std::accumulate(places.begin(), places.end(), Vector3{}, Add),
+                          1 / double(places.size()));
+    double largest = 0; // tangent of an angle to the normal
+    for (Vector3 const &normal : normals) {
+        double const height = Dot(facing.normal, normal);
+        if (!(height > 0)) {
+            return facing;
+        }
+        largest =
+            std::max(largest, GetLength(Subtract(normal, Scale(facing.normal, height))) / height);
+    }
+    facing.spread = kFactor * largest;
+    for (Vector3 const &place : places) {
+        Vector3 const d = Subtract(place, facing.center);
+        facing.radius = std::max(facing.radius, kFactor * GetLength(d));
+        facing.depth = std::max(facing.depth, -kFactor * Dot(facing.normal, d));
+    }
+    return facing;
 }
 
 } // namespace OpenSubdivHex::BfrExt::internal

@@ -2,11 +2,11 @@
 #ifndef OPENSUBDIVHEX_BFR_EXT_CELL_CELL_GRID_H
 #define OPENSUBDIVHEX_BFR_EXT_CELL_CELL_GRID_H
 
+#include "baseType.h"
 #include "cellMeasures.h"
 #include "patchEvaluator.h"
 #include "refinedCells.h"
 
-#include <memory>
 #include <vector>
 
 namespace OpenSubdivHex::BfrExt::internal {
@@ -14,9 +14,8 @@ namespace OpenSubdivHex::BfrExt::internal {
 /// \brief The cells up to two steps from a cell on, and where their corners are among the places of its LeafPlaces: from
 /// the surface at these places, the *samples*, a cell and its children are measured.
 ///
-/// Samples of a cell are made as the places of a leaf of tessellations are.  Those of a base face are made as its tessellation
-/// of level 2 is, in single precision, which the cells up to two steps on can do with: relative to its first control point
-/// and its size.
+/// Samples of a cell are made as the places of a leaf of tessellations are, those of a base face as its tessellation of level 2
+/// is: in single precision, which the cells up to two steps on can do with, relative to the first point and the size of all.
 ///
 /// One thread uses it at a time.
 class CellGrid {
@@ -29,17 +28,10 @@ public:
     /// Children of the cell, without their own.
     int GetNumChildren() const { return int(_cells[0].children.size()); }
 
-    /// @name Writes the samples, three numbers each
-    /// @{
-
-    /// Samples of a cell that is no base face.
+    /// Writes the samples of a cell that is no base face, three numbers each.
     void Sample(CellValues const &cell, std::vector<double> &samples);
-    /// Samples of a base face, whose control points are three numbers each, without gaps.
-    void Sample(CellType const &type, double const *controlPoints, std::vector<double> &samples);
-    /// Samples of a plain base face that is not in a lattice.
-    void Sample(PlainFaceType const &type, double const *controlPoints,
-                std::vector<double> &samples);
-    /// @}
+    /// Overload for a base face, whose control points are three numbers each, without gaps.
+    void Sample(BaseType const &type, double const *controlPoints, std::vector<double> &samples);
 
     /// Measures the cell, but where it faces.
     void Measure(std::vector<double> const &samples, CellMeasures &cell) const;
@@ -48,8 +40,11 @@ public:
     /// \param isSharp  whether something sharp is near
     void MeasureChildren(std::vector<double> const &samples, CellMeasures const &cell, bool isSharp,
                          CellMeasures *children) const;
-    /// Adds the polygons that the cell, 0, or a child, from 1 on, is made of.
-    void AddPolygons(std::vector<double> const &samples, int cell, CellFacing::Maker &maker) const;
+    /// \brief Finds where the cell, 0, or a child, from 1 on, faces.
+    ///
+    /// \param normals  of the surface at its corners, of any length
+    CellFacing FindFacing(std::vector<double> const &samples, int cell,
+                          std::vector<Vector3> normals) const;
 
 private:
     static constexpr int kNumSteps = 2;
@@ -60,32 +55,22 @@ private:
         std::vector<int> children; // in the grid
         double factor;             // of the range of heights
     };
-    struct Shape {
-        bool isWhole;
-        int sector;
-        double scale;                // of whole cells
-        std::array<Pair, 4> corners; // of half cells
-    };
-
     template <typename FUNCTION>
-    void sampleBase(double const *controlPoints, int numPoints, std::vector<double> &samples,
-                    FUNCTION const &evaluate);
-    int add(Shape const &shape, int numSteps);
-    Shape getChild(Shape const &shape, int child) const;
-    CellPlan const &getPlan(bool isInLattice);
+    void sample(double const *points, std::size_t stride, int numPoints,
+                std::vector<double> &samples, FUNCTION const &evaluate);
+    int add(CellOutline<Pair> const &outline, int numSteps);
     void measure(std::vector<double> const &samples, Cell const &cell,
                  CellMeasures &measures) const;
 
     FaceShape const _shape;
     LeafPlaces const _places;
     std::vector<Cell> _cells;
-    CellPlan const _plan;
-    std::unique_ptr<CellPlan const> _plansOfBase[2];
-    PatchEvaluator<double> _evaluator;
-    PatchEvaluator<float> _baseEvaluator;
+    CellPlan const _plan;       // of cells, and of base faces in lattices
+    CellPlan const _planOfBase; // of other base faces
+    PatchEvaluator<float> _evaluator;
     RingValues<float> _ringValues;
-    std::vector<float> _basePoints;
-    std::vector<float> _baseSamples;
+    std::vector<float> _points;
+    std::vector<float> _samples;
 };
 
 } // namespace OpenSubdivHex::BfrExt::internal

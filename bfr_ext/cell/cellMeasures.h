@@ -2,14 +2,43 @@
 #ifndef OPENSUBDIVHEX_BFR_EXT_CELL_CELL_MEASURES_H
 #define OPENSUBDIVHEX_BFR_EXT_CELL_CELL_MEASURES_H
 
-#include "vector3.h"
-
-#include <algorithm>
+#include <array>
+#include <cmath>
 #include <cstddef>
 #include <limits>
 #include <vector>
 
 namespace OpenSubdivHex::BfrExt::internal {
+
+/// \brief A point or a direction in space, for what cells look like in a view.
+using Vector3 = std::array<double, 3>;
+
+inline Vector3 ToVector3(double const *p) { return {p[0], p[1], p[2]}; }
+inline Vector3 Add(Vector3 const &a, Vector3 const &b) {
+    return {a[0] + b[0], a[1] + b[1], a[2] + b[2]};
+}
+inline Vector3 Subtract(Vector3 const &a, Vector3 const &b) {
+    return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
+}
+inline Vector3 Scale(Vector3 const &a, double s) { return {a[0] * s, a[1] * s, a[2] * s}; }
+inline double Dot(Vector3 const &a, Vector3 const &b) {
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+inline double GetLength(Vector3 const &a) { return std::sqrt(Dot(a, a)); }
+inline Vector3 Cross(Vector3 const &a, Vector3 const &b) {
+    return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+}
+
+/// Twice the area of a polygon along its normal, from its corners, three numbers each.
+inline Vector3 FindArea(std::vector<double> const &corners) {
+    Vector3 const origin = ToVector3(corners.data());
+    Vector3 area = {};
+    for (std::size_t i = 3; i + 3 < corners.size(); i += 3) {
+        area = Add(area, Cross(Subtract(ToVector3(&corners[i]), origin),
+                               Subtract(ToVector3(&corners[i + 3]), origin)));
+    }
+    return area;
+}
 
 /// A ball that encloses some points.
 struct Ball {
@@ -36,8 +65,6 @@ struct CellMeasures {
 /// mean of the places and r how far they are from it, (m + s w) . (eye - p) is at most m . (eye - c) - m . (p - c) +
 /// s (|part of eye - c in the plane| + r).
 struct CellFacing {
-    class Maker;
-
     bool IsBackFacing(Vector3 const &eye) const {
         Vector3 const toEye = Subtract(eye, center);
         double const height = Dot(normal, toEye);
@@ -50,56 +77,6 @@ struct CellFacing {
     Vector3 center = {};
     double radius = 0; ///< r
     double depth = 0;  ///< of places below the center, along the normal
-};
-
-/// Makes it of polygons.
-class CellFacing::Maker {
-public:
-    /// \param corners  three numbers each
-    void Add(std::vector<double> const &corners) {
-        Vector3 const area = FindArea(corners);
-        _areas.push_back(area);
-        _sum = internal::Add(_sum, area);
-        for (std::size_t i = 0; i < corners.size(); i += 3) {
-            _places.push_back(ToVector3(&corners[i]));
-            _sumOfPlaces = internal::Add(_sumOfPlaces, _places.back());
-        }
-    }
-    /// Adds a normal of the surface, of any length.
-    void AddNormal(Vector3 const &ofSurface) { _areas.push_back(ofSurface); }
-    CellFacing Make() const {
-        // A margin for angles between the polygons, and for angles of normals within each.
-        constexpr double kFactor = 3;
-        CellFacing facing;
-        double const length = GetLength(_sum);
-        if (!(length > 0)) {
-            return facing;
-        }
-        facing.normal = Scale(_sum, 1 / length);
-        facing.center = Scale(_sumOfPlaces, 1 / double(_places.size()));
-        double largest = 0; // tangent of an angle to the normal
-        for (Vector3 const &area : _areas) {
-            double const height = Dot(facing.normal, area);
-            if (!(height > 0)) {
-                return facing;
-            }
-            largest =
-                std::max(largest, GetLength(Subtract(area, Scale(facing.normal, height))) / height);
-        }
-        facing.spread = kFactor * largest;
-        for (Vector3 const &place : _places) {
-            Vector3 const d = Subtract(place, facing.center);
-            facing.radius = std::max(facing.radius, kFactor * GetLength(d));
-            facing.depth = std::max(facing.depth, -kFactor * Dot(facing.normal, d));
-        }
-        return facing;
-    }
-
-private:
-    std::vector<Vector3> _areas; // and normals
-    Vector3 _sum = {};
-    std::vector<Vector3> _places;
-    Vector3 _sumOfPlaces = {};
 };
 
 /// \brief Measures of the cells of a base face that views have asked for: first the face itself; the

@@ -6,12 +6,6 @@
 
 namespace OpenSubdivHex::BfrExt::internal {
 
-namespace {
-
-constexpr std::int32_t kOne = CellShape::kOne;
-
-} // namespace
-
 std::size_t CellMesh::Hash::operator()(std::array<std::int32_t, 3> const &key) const {
     std::uint64_t hash = std::uint64_t(key[0]);
     for (std::size_t i = 1; i < 3; ++i) {
@@ -46,7 +40,7 @@ CellMesh::CellMesh(CellTree const &tree, Polyline const edges[], CellShape const
     }
     _verts.reserve(numVerts);
     for (int corner = 0; corner < _shape.size; ++corner) {
-        add(PlaceOnEdge<Place>(_shape, corner, kOne, 0), 0, corner);
+        add(PlaceOnEdge<Place>(_shape, corner, CellShape::kOne, 0), 0, corner);
     }
     forEachCellByLevel(CellShape::MakeFace(), [&](CellShape const &cell) {
         if (_tree.IsRefined(cell.number)) {
@@ -55,23 +49,18 @@ CellMesh::CellMesh(CellTree const &tree, Polyline const edges[], CellShape const
     });
     for (int edge = 0; edge < _shape.size; ++edge) {
         for (Polyline::Place const place : edges[edge].GetPlaces()) {
-            std::int32_t const end = kOne / Polyline::kLength * place;
-            add(PlaceOnEdge<Place>(_shape, edge, kOne - end, end), -1, 0);
+            std::int32_t const end = CellShape::kOne / Polyline::kLength * place;
+            add(PlaceOnEdge<Place>(_shape, edge, CellShape::kOne - end, end), -1, 0);
         }
     }
 }
 
-// Adds what the child inside of a cell has of vertices.
+// Adds the vertices of the child inside of a cell.
+
 void CellMesh::addInside(CellShape const &cell) {
     CellShape const child = cell.GetChild(_tree, 0);
-    if (child.isWhole) {
-        for (int corner = 0; corner < _shape.size; ++corner) {
-            add(PlaceOnEdge<Place>(_shape, corner, child.scale, 0), child.number, corner);
-        }
-        return;
-    }
-    for (std::size_t i = 0; i < 4; ++i) {
-        add({cell.sector, child.corners[i]}, child.number, int(i));
+    for (int corner = 0; corner < child.GetNumCorners(_shape); ++corner) {
+        add(child.GetCorner(_shape, corner), child.number, corner);
     }
 }
 
@@ -115,30 +104,6 @@ void CellMesh::AppendBetween(int sector, Place const &start, Place const &end,
     AppendBetween(sector, second, end, verts);
 }
 
-// Appends the starts of some sides of a cell, each with what lies inside of the side.
-void CellMesh::appendSides(CellShape const &cell, int first, int count,
-                           std::vector<int> &polygon) const {
-    for (int i = first; i < first + count; ++i) {
-        SectorPlace<Place> start = {cell.sector, cell.corners[std::size_t(i) % 4]};
-        Place end = cell.corners[(std::size_t(i) + 1) % 4];
-        if (cell.isWhole) {
-            start = PlaceOnEdge<Place>(_shape, i, cell.scale, 0);
-            end = PlaceOnEdge<Place>(_shape, i, 0, cell.scale).coords;
-        }
-        polygon.push_back(Find(start.sector, start.coords));
-        AppendBetween(start.sector, start.coords, end, polygon);
-    }
-}
-
-std::vector<int> CellMesh::GetEdgeVertices(int edge) const {
-    auto const [sector, start] = PlaceOnEdge<Place>(_shape, edge, kOne, 0);
-    Place const end = PlaceOnEdge<Place>(_shape, edge, 0, kOne).coords;
-    std::vector<int> result = {Find(sector, start)};
-    AppendBetween(sector, start, end, result);
-    result.push_back(Find(sector, end));
-    return result;
-}
-
 std::vector<int> CellMesh::GetPolygon(CellShape const &cell) const {
     Polygon polygon;
     setPolygon(cell, polygon);
@@ -148,7 +113,13 @@ std::vector<int> CellMesh::GetPolygon(CellShape const &cell) const {
 void CellMesh::setPolygon(CellShape const &cell, Polygon &polygon) const {
     polygon.verts.clear();
     polygon.level = cell.level;
-    appendSides(cell, 0, cell.isWhole ? _shape.size : 4, polygon.verts);
+    for (int i = 0; i < cell.GetNumCorners(_shape); ++i) {
+        auto const [sector, start] = cell.GetCorner(_shape, i);
+        Place const end = cell.isWhole ? PlaceOnEdge<Place>(_shape, i, 0, cell.scale).coords
+                                       : cell.corners[(std::size_t(i) + 1) % 4];
+        polygon.verts.push_back(Find(sector, start));
+        AppendBetween(sector, start, end, polygon.verts);
+    }
 }
 
 void CellMesh::ForEachCell(std::function<void(Polygon &)> const &function) const {

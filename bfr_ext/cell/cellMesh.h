@@ -37,8 +37,10 @@ public:
 
     /// Vertices of coarser levels come first.
     std::vector<Vertex> const &GetVertices() const { return _verts; }
-    /// The vertices of an edge of the face, from its first corner to its second.
-    std::vector<int> GetEdgeVertices(int edge) const;
+    /// The vertices of the face.
+    std::vector<Vertex> GetFaceVertices() const {
+        return {_verts.begin(), _verts.begin() + _shape.size};
+    }
     /// The vertex at a place of a sector, or -1.
     int Find(int sector, Place const &place) const;
     /// Appends the vertices between two places of a side of a cell.
@@ -71,7 +73,6 @@ private:
     template <typename FUNCTION>
     void forEachCellByLevel(CellShape const &root, FUNCTION const &function) const;
     void setPolygon(CellShape const &cell, Polygon &polygon) const;
-    void appendSides(CellShape const &cell, int first, int count, std::vector<int> &polygon) const;
 
     CellTree const &_tree;
     FaceShape const _shape;

@@ -14,8 +14,16 @@ constexpr int kNumStepsOfHalves = 4;
 constexpr int kNumStepsOfWholes = 3;
 constexpr int kNumStepsOfFaces = 5; // in lattices
 
-// Sorts runs by their rows, and joins those that follow one another.
-void joinRuns(std::vector<PlaceRun> &runs) {
+LeafPlaces const &getHalfPlaces(int numSteps) {
+    static std::array<LeafPlaces, kNumStepsOfHalves + 1> const kPlaces = {
+        LeafPlaces(FaceShape(), 0), LeafPlaces(FaceShape(), 1), LeafPlaces(FaceShape(), 2),
+        LeafPlaces(FaceShape(), 3), LeafPlaces(FaceShape(), 4)};
+    return kPlaces[std::size_t(numSteps)];
+}
+
+} // namespace
+
+void JoinRuns(std::vector<PlaceRun> &runs) {
     std::sort(runs.begin(), runs.end(),
               [](PlaceRun const &a, PlaceRun const &b) { return a.row < b.row; });
     std::size_t numJoined = 0;
@@ -34,38 +42,27 @@ void joinRuns(std::vector<PlaceRun> &runs) {
     runs.shrink_to_fit();
 }
 
-LeafPlaces const &getHalfPlaces(int numSteps) {
-    static std::array<LeafPlaces, kNumStepsOfHalves + 1> const kPlaces = {
-        LeafPlaces(FaceShape(), 0), LeafPlaces(FaceShape(), 1), LeafPlaces(FaceShape(), 2),
-        LeafPlaces(FaceShape(), 3), LeafPlaces(FaceShape(), 4)};
-    return kPlaces[std::size_t(numSteps)];
-}
-
-} // namespace
-
 struct CellPlan::Apart {
     std::once_flag once;
     std::unique_ptr<CellPlan const> plan;
 };
 
 LeafPlaces::LeafPlaces(FaceShape shape, int numSteps) : _shape(shape), _numSteps(numSteps) {
+    auto const root =
+        shape.size > 0
+            ? CellOutline<Pair>::MakeWhole(1)
+            : CellOutline<Pair>::MakeHalf(0, {HalfCell::kCorners[0], HalfCell::kCorners[1],
+                                              HalfCell::kCorners[2], HalfCell::kCorners[3]});
+    for (int corner = 0; corner < root.GetNumCorners(shape); ++corner) {
+        add(root.GetCorner(shape, corner));
+    }
+    refine(root, numSteps);
     if (shape.size > 0) {
-        for (int corner = 0; corner < shape.size; ++corner) {
-            add(PlaceOnEdge<Pair>(shape, corner, 1.0, 0.0));
-        }
-        refine({-1, {{{1, 0}}}}, numSteps);
         // Points on the sides come last: tessellations have them apart, or first.
         std::stable_partition(_places.begin(), _places.end(), [&](Place const &place) {
             return FindOnEdge(shape, place, 1.0).edge < 0;
         });
     } else {
-        for (Pair const &corner : HalfCell::kCorners) {
-            add({0, corner});
-        }
-        refine({0,
-                {HalfCell::kCorners[0], HalfCell::kCorners[1], HalfCell::kCorners[2],
-                 HalfCell::kCorners[3]}},
-               numSteps);
         std::stable_sort(_places.begin(), _places.end(), [&](Place const &a, Place const &b) {
             Group const group = findGroup(a.coords);
             Group const other = findGroup(b.coords);
@@ -111,27 +108,17 @@ void LeafPlaces::add(Place const &place) {
 }
 
 // Level by level, since tessellations have places in that order.
-void LeafPlaces::refine(Cell const &root, int numSteps) {
-    std::vector<Cell> cells = {root};
+void LeafPlaces::refine(CellOutline<Pair> const &root, int numSteps) {
+    std::vector<CellOutline<Pair>> cells = {root};
     for (; numSteps > 0; --numSteps) {
-        std::vector<Cell> children;
-        for (Cell const &cell : cells) {
-            if (cell.sector < 0) {
-                double const scale = cell.corners[0][0];
-                children.push_back({-1, {{{scale / 2, 0}}}});
-                for (int corner = 0; corner < _shape.size; ++corner) {
-                    add(PlaceOnEdge<Pair>(_shape, corner, scale / 2, 0.0));
-                    if (corner >= _shape.GetFirstSector()) {
-                        children.push_back({corner, HalfCell::GetCornersAtEdge<Pair>(scale)});
-                    }
+        std::vector<CellOutline<Pair>> children;
+        for (CellOutline<Pair> const &cell : cells) {
+            for (int i = 0; i < cell.GetNumChildren(_shape); ++i) {
+                children.push_back(cell.GetChild(_shape, i));
+                // Only the first child has corners that the cell has not.
+                for (int corner = 0; i == 0 && corner < cell.GetNumCorners(_shape); ++corner) {
+                    add(children.back().GetCorner(_shape, corner));
                 }
-                continue;
-            }
-            for (std::size_t i = 0; i < 4; ++i) {
-                children.push_back({cell.sector, HalfCell::GetCornersOfChild(cell.corners, i)});
-            }
-            for (Pair const &inner : children[children.size() - 4].corners) {
-                add({cell.sector, inner});
             }
         }
         cells.swap(children);
@@ -141,42 +128,26 @@ void LeafPlaces::refine(Cell const &root, int numSteps) {
 CellPlan::CellPlan(FaceShape shape, int level, std::vector<LeafPlaces::Place> const &places,
                    Use use, bool isInLattice)
     : _shape(shape), _use(use), _isOfLeaf(false) {
-    _nodes.push_back({0, true, 0, level, {}, nullptr, {}, {{1, 0}, {0, 1}}, {}, nullptr});
+    _nodes.push_back({0, shape.size > 0, 0, level});
     if (isInLattice && level <= kNumStepsOfFaces) {
         setLeaf(_nodes[0]);
     }
     for (std::size_t i = 0; i < places.size(); ++i) {
         LeafPlaces::Place const &place = places[i];
         if (use != Use::Points || FindOnEdge(shape, place, 1.0).edge < 0) {
-            addPlace(place, MakeBasePoint(shape, place.sector, place.coords).toCoords, int(i));
+            BasePoint const point = shape.size > 0
+                                        ? MakeBasePoint(shape, place.sector, place.coords)
+                                        : BasePoint{0, place.coords, {{1, 0}, {0, 1}}};
+            addPlace(place, point.toCoords, int(i));
         }
-    }
-    finish();
-}
-
-CellPlan::CellPlan(FaceShape shape, int numSteps)
-    : _shape(shape), _use(Use::AllPoints), _isOfLeaf(false) {
-    _nodes.push_back(
-        {0, shape.size > 0, 0, numSteps, {}, nullptr, {}, {{1, 0}, {0, 1}}, {}, nullptr});
-    setLeaf(_nodes[0]);
-    for (int row = 0; row < int(_nodes[0].leaf->GetSize()); ++row) {
-        _nodes[0].runs.push_back({row, row, 1});
     }
     finish();
 }
 
 CellPlan::CellPlan(CellPlan const &plan, Node const &leaf)
     : _shape(plan._shape), _use(plan._use), _isOfLeaf(true) {
-    _nodes.push_back({0,
-                      leaf.isWhole,
-                      leaf.depth,
-                      leaf.numSteps,
-                      {},
-                      nullptr,
-                      {},
-                      {leaf.toCoords[0], leaf.toCoords[1]},
-                      {},
-                      nullptr});
+    _nodes.push_back(
+        {0, leaf.isWhole, leaf.depth, leaf.numSteps, {leaf.toCoords[0], leaf.toCoords[1]}});
     for (PlaceRun const &run : leaf.runs) {
         for (int i = 0; i < run.count; ++i) {
             LeafPlaces::Place const &place = (*leaf.leaf)[std::size_t(run.row) + std::size_t(i)];
@@ -226,7 +197,7 @@ void CellPlan::addPlace(LeafPlaces::Place place, Pair const (&toCoords)[2], int 
 
 void CellPlan::finish() {
     for (Node &node : _nodes) {
-        joinRuns(node.runs);
+        JoinRuns(node.runs);
         node.corners.shrink_to_fit();
     }
     _nodes.shrink_to_fit();
@@ -266,12 +237,7 @@ std::size_t CellPlan::findChild(std::size_t node, CellStep const &step, Pair con
                   step.isChildWhole,
                   _nodes[node].depth + 1,
                   _nodes[node].numSteps - 1,
-                  {},
-                  nullptr,
-                  {},
-                  {toCoords[0], toCoords[1]},
-                  {},
-                  nullptr};
+                  {toCoords[0], toCoords[1]}};
     if (child.isWhole) {
         double const scale = std::ldexp(1.0, child.depth);
         child.toCoords[0] = {scale, 0};

@@ -25,6 +25,7 @@ public:
     int GetNumSteps() const { return _numSteps; }
     std::size_t GetSize() const { return _places.size(); }
     Place const &operator[](std::size_t row) const { return _places[row]; }
+    std::vector<Place> const &GetAll() const { return _places; }
     std::size_t Find(Place const &place) const { return _rows.at(getKey(place)); }
 
 private:
@@ -33,21 +34,19 @@ private:
     // The groups of places that half cells have, in their order.
     enum Group { kInside, kLastSide, kFirstCorner, kFirstSide, kSecondSide, kThirdSide, kCorners };
 
-    struct Cell {
-        int sector;                  // -1: of a whole cell
-        std::array<Pair, 4> corners; // the first one alone of a whole cell
-    };
-
     Key getKey(Place const &place) const;
     static Group findGroup(Pair const &coords);
     void add(Place const &place);
-    void refine(Cell const &root, int numSteps);
+    void refine(CellOutline<Pair> const &root, int numSteps);
 
     FaceShape const _shape;
     int const _numSteps;
     std::vector<Place> _places;
     std::map<Key, std::size_t> _rows;
 };
+
+/// Sorts runs by their rows, and joins those that follow one another.
+void JoinRuns(std::vector<PlaceRun> &runs);
 
 /// \brief Which cells the places inside of a base face lie in: a base face is taken apart step by step
 /// into *leaves*, cells whose places are made at once, by a dense matrix of the cell's type
@@ -71,33 +70,32 @@ public:
     struct Apart;
     /// A cell with places, and which child of the cell before it is.
     struct Node {
-        std::size_t child;
-        bool isWhole;
-        int depth;
-        int numSteps; ///< that are left
-        std::vector<std::size_t> children;
-        /// For leaves: their places, and the rows that the plan's places have, ascending; a base face may have none.
-        LeafPlaces const *leaf;
-        std::vector<PlaceRun> runs;
+        std::size_t child = 0;
+        bool isWhole = true;
+        int depth = 0;
+        int numSteps = 0; ///< that are left
         /// Derivatives of the leaf's coordinates by u and v: coordinates in a half cell, or the whole cell's own u and v.
-        /// Then the corners of cells that are no leaves, in plans for derivatives and where no steps are left.
-        Pair toCoords[2];
-        std::vector<CornerPlace> corners;
-        std::shared_ptr<Apart> apart; ///< of leaves with steps left
+        Pair toCoords[2] = {{1, 0}, {0, 1}};
+        std::vector<std::size_t> children = {};
+        /// For leaves: their places, and the rows that the plan's places have, ascending; a base face may have none.
+        LeafPlaces const *leaf = nullptr;
+        std::vector<PlaceRun> runs = {};
+        /// The corners of cells that are no leaves, in plans for derivatives and where no steps are left.
+        std::vector<CornerPlace> corners = {};
+        std::shared_ptr<Apart> apart = {}; ///< of leaves with steps left
     };
     /// Points inside of the face, all points, or derivatives.
     enum class Use { Points, AllPoints, Derivatives };
 
+    /// \param shape        of a whole cell; of size 0: of half cells
     /// \param level        that of the places, at most
     /// \param places       with Use::Points, those on the border of the face are made apart
-    /// \param isInLattice  whether many faces are of the type of the base face
+    /// \param isInLattice  whether many faces are of the type of the base face; of half cells: true
     CellPlan(FaceShape shape, int level, std::vector<LeafPlaces::Place> const &places, Use use,
              bool isInLattice);
-    /// \brief Makes the plan of a cell that is a leaf, for all of its points.
-    ///
-    /// \param shape  of a whole cell; size 0: of half cells
-    CellPlan(FaceShape shape, int numSteps);
 
+    /// Whether it is for derivatives.
+    bool HasDerivatives() const { return _use == Use::Derivatives; }
     /// Whether no place is in a child of node 0, nor at a corner of it.
     bool IsEmpty() const { return _nodes[0].corners.empty() && _nodes[0].children.empty(); }
     /// Node 0 is the face, or the cell.

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cellShape.h"
 
-#include "halfCell.h"
-
 #include <algorithm>
 
 namespace OpenSubdivHex::BfrExt::internal {
@@ -79,20 +77,6 @@ bool hasCornerOnSide(Outline const &a, Outline const &b) {
 }
 
 } // namespace
-
-CellShape CellShape::GetChild(CellTree const &tree, int child) const {
-    int const first = tree.GetFirstChild(number) + child;
-    if (isWhole && child == 0) {
-        return {first, level + 1, true, 0, scale / 2, {}};
-    }
-    if (isWhole) {
-        return {first, level + 1,
-                false, child - 1 + tree.GetFaceShape().GetFirstSector(),
-                0,     HalfCell::GetCornersAtEdge<Place>(scale)};
-    }
-    return {first,  level + 1, false,
-            sector, 0,         HalfCell::GetCornersOfChild(corners, std::size_t(child))};
-}
 
 // Cells have their corners on the sides of those that they meet, or have corners of these on their own.
 bool CellShape::Touches(FaceShape shape, CellShape const &other) const {

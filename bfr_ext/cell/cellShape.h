@@ -2,7 +2,7 @@
 #ifndef OPENSUBDIVHEX_BFR_EXT_CELL_CELL_SHAPE_H
 #define OPENSUBDIVHEX_BFR_EXT_CELL_CELL_SHAPE_H
 
-#include "sectors.h"
+#include "halfCell.h"
 
 #include "bfr_ext/cellTree.h"
 
@@ -14,7 +14,7 @@ namespace OpenSubdivHex::BfrExt::internal {
 /// \brief Where a cell of a tree lies in the plane of its base face.
 ///
 /// All lines are straight there: half cells are trapezoids, and what an edge becomes lies on it.
-struct CellShape {
+struct CellShape : CellOutline<std::array<std::int32_t, 2>> {
     /// The coordinates a and b in a sector, in units of 2^-kBits: what the start and the end of the edge
     /// weigh beside the centre.
     using Place = std::array<std::int32_t, 2>;
@@ -22,10 +22,13 @@ struct CellShape {
     static constexpr std::int32_t kOne = std::int32_t(1) << kBits;
 
     /// The shape of the base face.
-    static CellShape MakeFace() { return {0, 0, true, 0, kOne, {}}; }
+    static CellShape MakeFace() { return {MakeWhole(kOne), 0, 0}; }
 
     /// The shape of a child, of a cell that \p tree has refined.
-    CellShape GetChild(CellTree const &tree, int child) const;
+    CellShape GetChild(CellTree const &tree, int child) const {
+        return {CellOutline::GetChild(tree.GetFaceShape(), child),
+                tree.GetFirstChild(number) + child, level + 1};
+    }
 
     /// Whether a half cell has a point in common with another cell.
     ///
@@ -35,10 +38,6 @@ struct CellShape {
 
     int number; ///< in the tree
     int level;
-    bool isWhole;
-    int sector;                   ///< of half cells
-    std::int32_t scale;           ///< of whole ones: how far their corners are from the centre
-    std::array<Place, 4> corners; ///< of half cells, in their sector
 };
 
 } // namespace OpenSubdivHex::BfrExt::internal

@@ -30,10 +30,6 @@ public:
 
     /// The type of a plain base face is made on demand.
     CellType const &GetType() const { return _plain ? _plain->Get() : *_type; }
-    /// Whether it is a plain base face, whose children alone need types.
-    bool IsPlainBase() const { return _plain != nullptr; }
-    /// Whether the surface is what its type makes of the points; of others, that of the children is.
-    bool HasSurfaceOfType() const { return !_plain && !_isInner; }
     int GetNumChildren() const;
     /// The shape of a whole cell; of size 0 of others.
     FaceShape GetShape() const {

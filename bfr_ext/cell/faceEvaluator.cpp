@@ -98,22 +98,21 @@ void FaceEvaluator<REAL>::evaluateLeaves(TessellationData const &tessellation, R
         results[1] ? &tessellation.GetCellPlan(isInLattice, true) : nullptr;
     if (!plain) {
         REAL const *const points = _points.Get();
-        evaluator.Evaluate(*_face.type, plan, _size, points, _points.GetStride(), results[0],
+        evaluator.Evaluate(*_face.type, plan, _size, points, _points.GetStride(), results,
                            resultDesc.stride);
         if (ofDerivatives) {
-            evaluator.EvaluateDerivatives(*_face.type, *ofDerivatives, _size, points,
-                                          _points.GetStride(), results[1], results[2],
-                                          resultDesc.stride);
+            evaluator.Evaluate(*_face.type, *ofDerivatives, _size, points, _points.GetStride(),
+                               results + 1, resultDesc.stride);
         }
     }
     useBorder([&](BorderEvaluator<REAL> &border) {
         // Where there are no places, no ring is needed.
         if (plain && !plan.IsEmpty()) {
-            evaluator.Evaluate(*plain, border.GetRingValues(), plan, results[0], resultDesc.stride);
+            evaluator.Evaluate(*plain, border.GetRingValues(), plan, results, resultDesc.stride);
         }
         if (plain && ofDerivatives && !ofDerivatives->IsEmpty()) {
-            evaluator.EvaluateDerivatives(*plain, border.GetRingValues(), *ofDerivatives,
-                                          results[1], results[2], resultDesc.stride);
+            evaluator.Evaluate(*plain, border.GetRingValues(), *ofDerivatives, results + 1,
+                               resultDesc.stride);
         }
         evaluateBorder(tessellation, border, results[0], resultDesc);
     });

@@ -7,70 +7,16 @@
 
 namespace OpenSubdivHex::BfrExt::internal {
 
-/// \brief How many cells of levels that are not refined lie in a cell of each level and kind.
-class FaceSections::LeafCounts {
-public:
-    LeafCounts(int edgeLevel, int level) {
-        for (int l = level; l >= 0; --l) {
-            auto const i = std::size_t(l);
-            _inside[i] = std::ldexp(1.0, 2 * (level - l));
-            _alongEdge[i] = l < std::min(level, edgeLevel)
-                                ? _alongEdge[i + 1] + 2 * _atEdge[i + 1] + _inside[i + 1]
-                                : 1;
-            _atEdge[i] = l < level ? _alongEdge[i + 1] + 3 * _inside[i + 1] : 1;
-        }
-    }
-
-    /// \param borderSide  CellTree::GetBorderSide()
-    double Get(int level, int borderSide) const {
-        return (borderSide < 0    ? _inside
-                : borderSide == 0 ? _alongEdge
-                                  : _atEdge)[std::size_t(level)];
-    }
-
-private:
-    using Counts = std::array<double, std::size_t(CellTree::kLastLevel) + 2>;
-
-    Counts _inside = {};
-    Counts _alongEdge = {}; // with the long edge on an edge of the face
-    Counts _atEdge = {};    // with another side there
-};
-
-double FaceSections::CountLeaves(FaceLevels const &faceLevels) {
-    auto const &[shape, levels] = faceLevels;
-    int const level = levels.back();
-    if (level == 0) {
-        return 1;
-    }
-    double count = 1 + shape.GetNumSectors() * (std::ldexp(1.0, 2 * (level - 1)) - 1) / 3;
-    for (int edge = shape.GetFirstSector(); edge < shape.size; ++edge) {
-        count += LeafCounts(faceLevels.levels[std::size_t(edge)], level).Get(1, 0);
-    }
-    return count;
-}
-
 FaceSections::FaceSections(FaceLevels const &faceLevels, int maxLeaves)
     : _levels(faceLevels.levels), _tree(nullptr), _cells(faceLevels.shape) {
     FaceShape const shape = faceLevels.shape;
-    std::vector<int> const &levels = _levels;
-    int const level = levels.back();
-    std::map<int, LeafCounts> counts;
     for (int edge = 0; edge < shape.size; ++edge) {
-        int const edgeLevel = levels[std::size_t(edge)];
-        counts.emplace(edgeLevel, LeafCounts(edgeLevel, level));
-        int const ofPolyline = GetEdgeLevel(shape, edge, edgeLevel);
-        if (_polylines.count(ofPolyline) == 0) {
-            _polylines.emplace(ofPolyline, Polyline(ofPolyline));
-        }
+        int const level = GetEdgeLevel(shape, edge, _levels[std::size_t(edge)]);
+        _polylines.emplace(level, Polyline(level));
     }
     cut(maxLeaves, [&](int cell, int) {
-        if (_cells.IsWhole(cell)) {
-            int const left = level - _cells.GetLevel(cell);
-            return cell == 0 ? CountLeaves(faceLevels)
-                             : 1 + shape.GetNumSectors() * (std::ldexp(1.0, 2 * left) - 1) / 3;
-        }
-        return counts.at(levels[std::size_t(_cells.GetEdge(cell))])
-            .Get(_cells.GetLevel(cell), _cells.GetBorderSide(cell));
+        int const numSteps = _levels.back() - _cells.GetLevel(cell);
+        return _cells.IsWhole(cell) ? CountLeaves(shape, numSteps) : std::ldexp(1.0, 2 * numSteps);
     });
 }
 

@@ -4,6 +4,7 @@
 
 #include "cellMesh.h"
 
+#include <cmath>
 #include <limits>
 #include <map>
 #include <memory>
@@ -47,8 +48,10 @@ public:
     FaceSections(FaceSections const &) = delete;
     FaceSections &operator=(FaceSections const &) = delete;
 
-    /// How many cells of levels are not refined; of half a polygon as if its long edge had the level of the inside.
-    static double CountLeaves(FaceLevels const &levels);
+    /// How many cells are not refined where all have a level; at most so many where edges have others.
+    static double CountLeaves(FaceShape shape, int level) {
+        return level == 0 ? 1 : 1 + shape.GetNumSectors() * (std::ldexp(1.0, 2 * level) - 1) / 3;
+    }
 
     FaceShape GetFaceShape() const { return _cells.GetFaceShape(); }
     int GetNumSections() const { return int(_sections.size()); }
@@ -90,8 +93,6 @@ public:
     int CountPointsBefore(EdgePlace<int> const &place) const;
 
 private:
-    class LeafCounts;
-
     template <typename COUNT>
     void cut(int maxLeaves, COUNT const &count);
     bool isRefined(CellTree const &tree, int cell, int wholeCell) const;

@@ -120,6 +120,42 @@ public:
     static constexpr CellMap kFromSector = {{{-0.5, 0.5}, {-1, -1}}, {0.5, 1}};
 };
 
+/// \brief Where a cell lies in its base face: the corners of a half cell in a sector, or how far those of a whole cell are
+/// from the centre.
+template <typename PLACE>
+struct CellOutline {
+    using Number = typename PLACE::value_type;
+
+    /// A half cell.
+    static CellOutline MakeHalf(int sectorOfCell, std::array<PLACE, 4> const &cornersOfCell) {
+        return {false, sectorOfCell, 0, cornersOfCell};
+    }
+    /// A whole cell.
+    static CellOutline MakeWhole(Number scaleOfCell) { return {true, 0, scaleOfCell, {}}; }
+
+    /// How many children it has.
+    int GetNumChildren(FaceShape face) const { return isWhole ? face.GetNumSectors() + 1 : 4; }
+    /// A child, in the order of RefineCell().
+    CellOutline GetChild(FaceShape face, int child) const {
+        if (isWhole && child > 0) {
+            return MakeHalf(child - 1 + face.GetFirstSector(),
+                            HalfCell::GetCornersAtEdge<PLACE>(scale));
+        }
+        return isWhole ? MakeWhole(scale / 2)
+                       : MakeHalf(sector, HalfCell::GetCornersOfChild(corners, std::size_t(child)));
+    }
+    int GetNumCorners(FaceShape face) const { return isWhole ? face.size : 4; }
+    SectorPlace<PLACE> GetCorner(FaceShape face, int corner) const {
+        return isWhole ? PlaceOnEdge<PLACE>(face, corner, scale, Number(0))
+                       : SectorPlace<PLACE>{sector, corners[std::size_t(corner)]};
+    }
+
+    bool isWhole;
+    int sector;                   ///< of a half cell
+    Number scale;                 ///< of a whole one
+    std::array<PLACE, 4> corners; ///< of a half cell
+};
+
 /// The child of a cell that has one of its corners, in the order of RefineCell().
 struct CornerChild {
     std::size_t child;

@@ -2,8 +2,6 @@
 #include "patchEvaluator.h"
 
 #include <algorithm>
-#include <array>
-#include <cassert>
 
 namespace OpenSubdivHex::BfrExt::internal {
 
@@ -13,80 +11,6 @@ namespace {
 bool isLarge(CellType const &type, CellPlan::Node const &leaf) {
     constexpr int kMaxPoints = 128;
     return type.GetNumPoints() > kMaxPoints && leaf.numSteps > 0;
-}
-
-// A leaf: a cell of some type, of whose rings its points may be those.
-struct Leaf {
-    CellType const &type;
-    RingCell const *ringCell;
-    LeafPlaces const &places;
-
-    // Expands a sum of the points of the type into one of the points of the rings.
-    std::vector<double> const &Order(std::vector<double> const &weights,
-                                     std::vector<double> &scratch) const {
-        if (!ringCell) {
-            return weights;
-        }
-        ringCell->GetPlaces().Order(weights, scratch);
-        return scratch;
-    }
-
-    StencilOf GetStencilOf() const {
-        return ringCell && ringCell->IsInner() ? StencilOf::Step : StencilOf::Points;
-    }
-    std::size_t GetNumPoints() const {
-        return ringCell ? ringCell->GetColumns().size() : std::size_t(type.GetNumPoints());
-    }
-};
-
-// Weights of some places, by point.
-using Rows = std::vector<std::vector<double>>;
-
-// Matrices that evaluate a leaf.
-template <typename REAL, std::size_t COUNT>
-using LeafMatrices = std::array<PlaceMatrix<REAL>, COUNT>;
-
-// Makes matrices of a leaf, the rows of which find(stencil, place) finds, and getRow(stencil, i) gives.
-template <typename REAL, std::size_t COUNT, typename FIND, typename GET>
-LeafMatrices<REAL, COUNT> makeMatrices(Leaf const &leaf, FIND const &find, GET const &getRow) {
-    CellStencil stencil(leaf.type, leaf.GetStencilOf());
-    Rows rows(leaf.places.GetSize() * COUNT);
-    std::vector<double> scratch;
-    for (std::size_t row = 0; row < leaf.places.GetSize(); ++row) {
-        find(stencil, leaf.places[row]);
-        for (std::size_t i = 0; i < COUNT; ++i) {
-            rows[row * COUNT + i] = leaf.Order(getRow(stencil, i), scratch);
-        }
-    }
-    LeafMatrices<REAL, COUNT> result;
-    result.fill(PlaceMatrix<REAL>(leaf.places.GetSize(), rows[0].size()));
-    for (std::size_t row = 0; row < rows.size(); ++row) {
-        result[row % COUNT].Set(row / COUNT, rows[row]);
-    }
-    return result;
-}
-
-// The matrices of a leaf for points, or for derivatives, are made when they are first asked for.
-template <typename REAL, std::size_t COUNT, typename FIND, typename GET>
-LeafMatrices<REAL, COUNT> const &getMatrices(PatternOf of, Leaf const &leaf, FIND const &find,
-                                             GET const &getRow) {
-    int const numSteps = leaf.places.GetNumSteps();
-    PatternTable &patterns = leaf.ringCell ? leaf.ringCell->GetPatterns() : leaf.type.GetPatterns();
-    return patterns.Get<LeafMatrices<REAL, COUNT>>(
-        PatternTable::GetKind<REAL>(of), &numSteps, &numSteps + 1,
-        [&] { return makeMatrices<REAL, COUNT>(leaf, find, getRow); });
-}
-
-template <typename REAL>
-LeafMatrices<REAL, 1> const &getPointMatrices(Leaf const &leaf) {
-    return getMatrices<REAL, 1>(
-        PatternOf::Leaf, leaf,
-        [](CellStencil &stencil, LeafPlaces::Place const &place) {
-            stencil.Find({place.sector, place.coords, {}}, false);
-        },
-        [](CellStencil const &stencil, std::size_t) -> std::vector<double> const & {
-            return stencil.GetWeights();
-        });
 }
 
 // Two places: derivatives, of which getRow(k) gives the rows as of the type.
@@ -130,36 +54,79 @@ PlaceMatrix<REAL> const &getCornerDerivatives(RingCell const &child, int corner)
 
 } // namespace
 
+// The derivatives are by Bfr's u and v.
+template <typename REAL>
+typename PlaceSource<REAL>::Matrices
+PlaceSource<REAL>::MakeMatrices(std::vector<BfrPlace> const &places, bool hasDerivatives) const {
+    bool const isOfStep = ringCell && ringCell->IsInner();
+    CellStencil stencil(type, isOfStep ? StencilOf::Step : StencilOf::Points);
+    std::size_t const numColumns =
+        ringCell ? ringCell->GetColumns().size() : std::size_t(type.GetNumPoints());
+    Matrices matrices(hasDerivatives ? 2 : 1, PlaceMatrix<REAL>(places.size(), numColumns));
+    std::vector<double> ordered;
+    auto const set = [&](std::size_t kind, std::size_t row, std::vector<double> const &weights) {
+        if (ringCell) {
+            ringCell->GetPlaces().Order(weights, ordered);
+        }
+        matrices[kind].Set(row, ringCell ? ordered : weights);
+    };
+    std::vector<double> derivative;
+    for (std::size_t row = 0; row < places.size(); ++row) {
+        BfrPlace const &place = places[row];
+        stencil.Find(place.point, hasDerivatives);
+        if (!hasDerivatives) {
+            set(0, row, stencil.GetWeights());
+            continue;
+        }
+        std::vector<double> const *along[2] = {&stencil.GetDuWeights(), &stencil.GetDvWeights()};
+        // Vertices of the face have the derivatives of the face.
+        if (ringCell && !type.IsWhole() && place.point.coords == HalfCell::kCorners[0]) {
+            CellType::Derivatives const &ofFace =
+                isOfStep ? type.GetParentDerivativesOfStep(0) : type.GetParentDerivatives(0);
+            along[0] = &ofFace.rows[0];
+            along[1] = &ofFace.rows[1];
+        }
+        for (std::size_t k = 0; k < 2; ++k) {
+            derivative.resize(along[0]->size());
+            for (std::size_t i = 0; i < derivative.size(); ++i) {
+                derivative[i] =
+                    place.toOwn[0][k] * (*along[0])[i] + place.toOwn[1][k] * (*along[1])[i];
+            }
+            set(k, row, derivative);
+        }
+    }
+    return matrices;
+}
+
+template <typename REAL>
+void PlaceSource<REAL>::Evaluate(Matrices const &matrices, std::size_t size, REAL *const *results,
+                                 std::ptrdiff_t resultStride,
+                                 std::vector<PlaceRun> const *runs) const {
+    for (std::size_t i = 0; i < matrices.size(); ++i) {
+        SumUpPlaces(matrices[i], {points, stride, size, indices, results[i], resultStride,
+                                  runs ? runs->data() : nullptr, runs ? runs->size() : 0});
+    }
+}
+
+template <typename REAL>
+void PatchEvaluator<REAL>::begin(CellPlan const &plan, std::size_t size, REAL *const *results,
+                                 std::ptrdiff_t resultStride) {
+    _size = size;
+    _paddedSize = StepMatrix::GetPaddedSize(size);
+    _hasDerivatives = plan.HasDerivatives();
+    _results[0] = results[0];
+    _results[1] = _hasDerivatives ? results[1] : nullptr;
+    _resultStride = resultStride;
+}
+
 template <typename REAL>
 void PatchEvaluator<REAL>::Evaluate(CellType const &type, CellPlan const &plan, int size,
-                                    REAL const *controlPoints, std::ptrdiff_t stride, REAL *results,
-                                    std::ptrdiff_t resultStride) {
-    _results = results;
-    _resultStride = resultStride;
-    evaluate(type, plan, size, controlPoints, stride);
-}
-
-template <typename REAL>
-void PatchEvaluator<REAL>::EvaluateDerivatives(CellType const &type, CellPlan const &plan, int size,
-                                               REAL const *controlPoints, std::ptrdiff_t stride,
-                                               REAL *du, REAL *dv, std::ptrdiff_t resultStride) {
-    _results = nullptr;
-    _derivatives[0] = du;
-    _derivatives[1] = dv;
-    _resultStride = resultStride;
-    evaluate(type, plan, size, controlPoints, stride);
-}
-
-template <typename REAL>
-void PatchEvaluator<REAL>::evaluate(CellType const &type, CellPlan const &plan, int size,
-                                    REAL const *controlPoints, std::ptrdiff_t stride) {
-    _size = std::size_t(size);
-    _paddedSize = StepMatrix::GetPaddedSize(_size);
+                                    REAL const *controlPoints, std::ptrdiff_t stride,
+                                    REAL *const *results, std::ptrdiff_t resultStride) {
+    begin(plan, std::size_t(size), results, resultStride);
     bool const isTakenApart = plan[0].leaf && isLarge(type, plan[0]);
     if (plan[0].leaf && !isTakenApart) {
-        if (!plan[0].runs.empty()) {
-            evaluateLeaf(type, nullptr, plan[0], controlPoints, stride, nullptr);
-        }
+        evaluateLeaf({type, nullptr, controlPoints, stride, nullptr}, plan[0]);
         return;
     }
     auto const numPoints = std::size_t(type.GetNumPoints());
@@ -203,53 +170,42 @@ void PatchEvaluator<REAL>::descendToChildren(CellType const &type, CellPlan cons
         } else if (isLarge(*link.type, child)) {
             descend(*link.type, plan.TakeApart(child), 0, depth + 1);
         } else {
-            evaluateLeaf(*link.type, nullptr, child, childPoints.data(),
-                         std::ptrdiff_t(_paddedSize), nullptr);
+            evaluateLeaf(
+                {*link.type, nullptr, childPoints.data(), std::ptrdiff_t(_paddedSize), nullptr},
+                child);
         }
     }
 }
 
 template <typename REAL>
 void PatchEvaluator<REAL>::Evaluate(PlainFaceType const &type, RingValues<REAL> &values,
-                                    CellPlan const &plan, REAL *results,
+                                    CellPlan const &plan, REAL *const *results,
                                     std::ptrdiff_t resultStride) {
-    _results = results;
-    _resultStride = resultStride;
-    evaluate(type, values, plan);
-}
-
-template <typename REAL>
-void PatchEvaluator<REAL>::EvaluateDerivatives(PlainFaceType const &type, RingValues<REAL> &values,
-                                               CellPlan const &plan, REAL *du, REAL *dv,
-                                               std::ptrdiff_t resultStride) {
-    _results = nullptr;
-    _derivatives[0] = du;
-    _derivatives[1] = dv;
-    _resultStride = resultStride;
-    evaluate(type, values, plan);
-}
-
-template <typename REAL>
-void PatchEvaluator<REAL>::evaluate(PlainFaceType const &type, RingValues<REAL> &values,
-                                    CellPlan const &plan) {
-    _size = values.GetSize();
-    _paddedSize = values.GetPaddedSize();
+    begin(plan, values.GetSize(), results, resultStride);
     FaceRings const &face = type.GetRings();
     REAL const *const ofRings = values.GetPoints();
-    evaluateCorners(face, values, plan[0]);
+    auto const findIndices = [&](std::size_t child) -> RingCell const & {
+        RingCell const &cell = face.GetChild(child);
+        values.FindChildIndices(face, child, _indices);
+        return cell;
+    };
+    for (CellPlan::CornerPlace const &corner : plan[0].corners) {
+        evaluateCorner(getFaceDerivatives<REAL>(findIndices(corner.corner + 1)), corner, ofRings);
+    }
     for (std::size_t const next : plan[0].children) {
         CellPlan::Node const &child = plan[next];
-        RingCell const &cell = face.GetChild(child.child);
-        std::vector<int> const &columns = cell.GetColumns();
-        values.FindChildIndices(face, child.child, _indices);
+        RingCell const &cell = findIndices(child.child);
         if (child.leaf) {
-            evaluateLeaf(cell.GetType(), &cell, child, ofRings, std::ptrdiff_t(_paddedSize),
-                         _indices.data());
+            evaluateLeaf(
+                {cell.GetType(), &cell, ofRings, std::ptrdiff_t(_paddedSize), _indices.data()},
+                child);
             continue;
         }
-        if (cell.IsInner()) {
-            evaluateCorners(cell, child, ofRings);
+        for (std::size_t i = 0; cell.IsInner() && i < child.corners.size(); ++i) {
+            CellPlan::CornerPlace const &corner = child.corners[i];
+            evaluateCorner(getCornerDerivatives<REAL>(cell, int(corner.corner)), corner, ofRings);
         }
+        std::vector<int> const &columns = cell.GetColumns();
         std::vector<REAL> &points = getPoints(cell.IsInner() ? 3 : 2, columns.size());
         for (std::size_t i = 0; i < columns.size(); ++i) {
             StepMatrix::CopyPadded(ofRings + std::size_t(_indices[i]) * _paddedSize, _paddedSize,
@@ -263,34 +219,33 @@ void PatchEvaluator<REAL>::evaluate(PlainFaceType const &type, RingValues<REAL> 
     }
 }
 
-// The points are those of the type, or of the rings that it is told as a cell of.
+// The matrices of a leaf are made when they are first asked for.
 template <typename REAL>
-void PatchEvaluator<REAL>::evaluateLeaf(CellType const &type, RingCell const *ringCell,
-                                        CellPlan::Node const &leaf, REAL const *points,
-                                        std::ptrdiff_t stride, int const *indices) {
-    assert(!leaf.runs.empty()); // none would stand for all
-    Leaf const ofLeaf = {type, ringCell, *leaf.leaf};
-    if (_results) {
-        SumUpPlaces(getPointMatrices<REAL>(ofLeaf)[0],
-                    {points, stride, _size, indices, _results, _resultStride, leaf.runs.data(),
-                     leaf.runs.size()});
-        return;
+void PatchEvaluator<REAL>::evaluateLeaf(PlaceSource<REAL> const &source,
+                                        CellPlan::Node const &leaf) {
+    if (leaf.runs.empty()) {
+        return; // none would stand for all
     }
-    auto const &matrices = getMatrices<REAL, 2>(
-        PatternOf::LeafDerivatives, ofLeaf,
-        [&](CellStencil &stencil, LeafPlaces::Place const &place) {
-            stencil.Find(type.IsWhole() ? MakeBasePoint(type.GetShape(), place.sector, place.coords)
-                                        : BasePoint{place.sector, place.coords, {{1, 0}, {0, 1}}},
-                         true);
-        },
-        [](CellStencil const &stencil, std::size_t i) -> std::vector<double> const & {
-            return i == 0 ? stencil.GetDuWeights() : stencil.GetDvWeights();
-        });
-    for (std::size_t i = 0; i < 2; ++i) {
-        SumUpPlaces(matrices[i], {points, stride, _size, indices, _derivatives[i], _resultStride,
-                                  leaf.runs.data(), leaf.runs.size()});
+    LeafPlaces const &places = *leaf.leaf;
+    auto const make = [&] {
+        std::vector<BfrPlace> all;
+        for (std::size_t row = 0; row < places.GetSize(); ++row) {
+            auto const &[sector, coords] = places[row];
+            BasePoint const point = source.type.IsWhole()
+                                        ? MakeBasePoint(source.type.GetShape(), sector, coords)
+                                        : BasePoint{sector, coords, {{1, 0}, {0, 1}}};
+            all.push_back({point, {{1, 0}, {0, 1}}, {}});
+        }
+        return source.MakeMatrices(all, _hasDerivatives);
+    };
+    int const numSteps = places.GetNumSteps();
+    PatternOf const of = _hasDerivatives ? PatternOf::LeafDerivatives : PatternOf::Leaf;
+    source.Evaluate(source.GetPatterns().template Get<typename PlaceSource<REAL>::Matrices>(
+                        PatternTable::GetKind<REAL>(of), &numSteps, &numSteps + 1, make),
+                    _size, _results, _resultStride, &leaf.runs);
+    if (_hasDerivatives) {
+        turnDerivatives(leaf);
     }
-    turnDerivatives(leaf);
 }
 
 // Turns derivatives by the coordinates of a leaf into derivatives by u and v.
@@ -306,10 +261,10 @@ void PatchEvaluator<REAL>::turnDerivatives(CellPlan::Node const &leaf) const {
         std::ptrdiff_t place = std::ptrdiff_t(run.place) * _resultStride;
         for (int i = 0; i < run.count; ++i, place += _resultStride) {
             for (std::ptrdiff_t k = place; k < place + std::ptrdiff_t(_size); ++k) {
-                REAL const along = _derivatives[0][k];
-                REAL const across = _derivatives[1][k];
-                _derivatives[0][k] = factors[0][0] * along + factors[0][1] * across;
-                _derivatives[1][k] = factors[1][0] * along + factors[1][1] * across;
+                REAL const along = _results[0][k];
+                REAL const across = _results[1][k];
+                _results[0][k] = factors[0][0] * along + factors[0][1] * across;
+                _results[1][k] = factors[1][0] * along + factors[1][1] * across;
             }
         }
     }
@@ -329,9 +284,9 @@ void PatchEvaluator<REAL>::evaluateCorners(CellType const &type, CellPlan::Node 
     };
     for (CellPlan::CornerPlace const &corner : cell.corners) {
         std::ptrdiff_t const first = std::ptrdiff_t(corner.place) * _resultStride;
-        if (_results) {
+        if (!_hasDerivatives) {
             for (std::size_t k = 0; k < _size; ++k) {
-                _results[first + std::ptrdiff_t(k)] =
+                _results[0][first + std::ptrdiff_t(k)] =
                     REAL(sum(type.GetCornerPoints()[corner.corner], k));
             }
             continue;
@@ -340,30 +295,10 @@ void PatchEvaluator<REAL>::evaluateCorners(CellType const &type, CellPlan::Node 
         for (std::size_t k = 0; k < _size; ++k) {
             double const along[2] = {sum(ofType.derivatives[0], k), sum(ofType.derivatives[1], k)};
             for (std::size_t i = 0; i < 2; ++i) {
-                _derivatives[i][first + std::ptrdiff_t(k)] =
+                _results[i][first + std::ptrdiff_t(k)] =
                     REAL(corner.toCoords[0][i] * along[0] + corner.toCoords[1][i] * along[1]);
             }
         }
-    }
-}
-
-// A base face, from the points of its rings.
-template <typename REAL>
-void PatchEvaluator<REAL>::evaluateCorners(FaceRings const &face, RingValues<REAL> &values,
-                                           CellPlan::Node const &cell) {
-    for (CellPlan::CornerPlace const &corner : cell.corners) {
-        RingCell const &child = face.GetChild(corner.corner + 1);
-        values.FindChildIndices(face, corner.corner + 1, _indices);
-        evaluateCorner(getFaceDerivatives<REAL>(child), corner, values.GetPoints());
-    }
-}
-
-// One of its children, whose indices are known.
-template <typename REAL>
-void PatchEvaluator<REAL>::evaluateCorners(RingCell const &child, CellPlan::Node const &cell,
-                                           REAL const *points) {
-    for (CellPlan::CornerPlace const &corner : cell.corners) {
-        evaluateCorner(getCornerDerivatives<REAL>(child, int(corner.corner)), corner, points);
     }
 }
 
@@ -377,7 +312,7 @@ void PatchEvaluator<REAL>::evaluateCorner(PlaceMatrix<REAL> const &derivatives,
     for (std::size_t i = 0; i < 2; ++i) {
         REAL const factors[2] = {REAL(corner.toCoords[0][i]), REAL(corner.toCoords[1][i])};
         for (std::size_t k = 0; k < _size; ++k) {
-            _derivatives[i][first + std::ptrdiff_t(k)] =
+            _results[i][first + std::ptrdiff_t(k)] =
                 factors[0] * _along[k] + factors[1] * _along[_size + k];
         }
     }
@@ -394,6 +329,8 @@ std::vector<REAL> &PatchEvaluator<REAL>::getPoints(std::size_t place, std::size_
     return points;
 }
 
+template struct PlaceSource<float>;
+template struct PlaceSource<double>;
 template class PatchEvaluator<float>;
 template class PatchEvaluator<double>;
 

@@ -2,6 +2,7 @@
 #ifndef OPENSUBDIVHEX_BFR_EXT_CELL_PATCH_EVALUATOR_H
 #define OPENSUBDIVHEX_BFR_EXT_CELL_PATCH_EVALUATOR_H
 
+#include "bfrPlace.h"
 #include "cellPlan.h"
 #include "plainFace.h"
 
@@ -10,49 +11,57 @@
 
 namespace OpenSubdivHex::BfrExt::internal {
 
+/// \brief What the places of a cell are sums of: the points of its type or, in a child of a plain face, points of rings.
+template <typename REAL>
+struct PlaceSource {
+    using Matrices = std::vector<PlaceMatrix<REAL>>;
+
+    /// Where matrices of the sources are kept.
+    PatternTable &GetPatterns() const {
+        return ringCell ? ringCell->GetPatterns() : type.GetPatterns();
+    }
+    /// Makes matrices with a row for each place: one for the points, or two for the derivatives by u and v.
+    Matrices MakeMatrices(std::vector<BfrPlace> const &places, bool hasDerivatives) const;
+    /// Evaluates the places of matrices, each of which writes results of its own.
+    ///
+    /// \param runs  which places; null: all
+    void Evaluate(Matrices const &matrices, std::size_t size, REAL *const *results,
+                  std::ptrdiff_t resultStride, std::vector<PlaceRun> const *runs) const;
+
+    CellType const &type;
+    RingCell const *ringCell; ///< null: the points of the type
+    REAL const *points;
+    std::ptrdiff_t stride;
+    int const *indices; ///< by column; null: all in turn
+};
+
 /// \brief Evaluates the inside of base faces: their points are refined to those of leaves, whose places
 /// are summed up by the matrices of their types.
 template <typename REAL>
 class PatchEvaluator {
 public:
-    /// \brief Writes the points at the places of a plan, where their numbers say.
+    /// \brief Writes the points at the places of a plan, where their numbers say; of a plan for derivatives, those by u
+    /// and by v.
     ///
     /// \param size          numbers of a point
     /// \param stride        from one control point to the next
+    /// \param results       one array, or two
     /// \param resultStride  from one place to the next
     void Evaluate(CellType const &type, CellPlan const &plan, int size, REAL const *controlPoints,
-                  std::ptrdiff_t stride, REAL *results, std::ptrdiff_t resultStride);
-
-    /// Overload with the derivatives by u and v.
-    ///
-    /// \param plan  one for derivatives
-    void EvaluateDerivatives(CellType const &type, CellPlan const &plan, int size,
-                             REAL const *controlPoints, std::ptrdiff_t stride, REAL *du, REAL *dv,
-                             std::ptrdiff_t resultStride);
-
-    /// @name The same of plain faces, from the points of their rings
-    /// @{
-
+                  std::ptrdiff_t stride, REAL *const *results, std::ptrdiff_t resultStride);
+    /// Overload for a plain face, from the points of its rings; the plan is not empty.
     void Evaluate(PlainFaceType const &type, RingValues<REAL> &values, CellPlan const &plan,
-                  REAL *results, std::ptrdiff_t resultStride);
-    void EvaluateDerivatives(PlainFaceType const &type, RingValues<REAL> &values,
-                             CellPlan const &plan, REAL *du, REAL *dv, std::ptrdiff_t resultStride);
-    /// @}
+                  REAL *const *results, std::ptrdiff_t resultStride);
 
 private:
-    void evaluate(CellType const &type, CellPlan const &plan, int size, REAL const *controlPoints,
-                  std::ptrdiff_t stride);
-    void evaluate(PlainFaceType const &type, RingValues<REAL> &values, CellPlan const &plan);
+    void begin(CellPlan const &plan, std::size_t size, REAL *const *results,
+               std::ptrdiff_t resultStride);
     void descend(CellType const &type, CellPlan const &plan, std::size_t node, std::size_t depth);
     void descendToChildren(CellType const &type, CellPlan const &plan, std::size_t node,
                            std::size_t depth);
-    void evaluateLeaf(CellType const &type, RingCell const *ringCell, CellPlan::Node const &leaf,
-                      REAL const *points, std::ptrdiff_t stride, int const *indices);
+    void evaluateLeaf(PlaceSource<REAL> const &source, CellPlan::Node const &leaf);
     void turnDerivatives(CellPlan::Node const &leaf) const;
     void evaluateCorners(CellType const &type, CellPlan::Node const &cell, REAL const *points);
-    void evaluateCorners(FaceRings const &face, RingValues<REAL> &values,
-                         CellPlan::Node const &cell);
-    void evaluateCorners(RingCell const &child, CellPlan::Node const &cell, REAL const *points);
     void evaluateCorner(PlaceMatrix<REAL> const &derivatives, CellPlan::CornerPlace const &corner,
                         REAL const *points);
     std::vector<REAL> &getPoints(std::size_t place, std::size_t numPoints);
@@ -62,10 +71,13 @@ private:
     std::deque<std::vector<REAL>> _points; // by depth, of a cell and of its children
     std::vector<int> _indices;
     std::vector<REAL> _along; // derivatives at a corner, by two coordinates
-    REAL *_results = nullptr; // points
-    REAL *_derivatives[2] = {};
+    bool _hasDerivatives = false;
+    REAL *_results[2] = {}; // points, or derivatives
     std::ptrdiff_t _resultStride = 0;
 };
+
+extern template struct PlaceSource<float>;
+extern template struct PlaceSource<double>;
 
 } // namespace OpenSubdivHex::BfrExt::internal
 

@@ -33,30 +33,19 @@ void forEachBlock(PatternTable &patterns, int kind, std::array<int, SIZE> const 
     }
 }
 
-void addToRuns(int row, int place, std::vector<PlaceRun> &runs) {
-    bool const isFollowing = !runs.empty() && runs.back().row + runs.back().count == row &&
-                             runs.back().place + runs.back().count == place &&
-                             row % PlaceRun::kMaxBlock != 0;
-    if (isFollowing) {
-        ++runs.back().count;
-    } else {
-        runs.push_back({row, place, 1});
-    }
-}
-
-// The points of a face in one of its children, and their numbers in the face, from the first one's on.
-std::vector<BfrPlace> selectPlaces(std::vector<BfrPlace> const &places, int first,
-                                   std::size_t child, FaceShape shape,
-                                   std::vector<PlaceRun> &runs) {
+// The places of a face in one of its children, and their numbers in the face.
+std::vector<BfrPlace> selectPlaces(std::vector<BfrPlace> const &places, std::size_t child,
+                                   FaceShape shape, std::vector<PlaceRun> &runs) {
     std::vector<BfrPlace> result;
     for (std::size_t i = 0; i < places.size(); ++i) {
         BasePoint const &point = places[i].point;
         CellStep const step = FindCellStep(shape, point.sector, point.coords);
         if (step.child == child) {
-            addToRuns(int(result.size()), first + int(i), runs);
+            runs.push_back({int(result.size()), int(i), 1});
             result.push_back(MoveToChild(places[i], step, shape));
         }
     }
+    JoinRuns(runs);
     return result;
 }
 
@@ -113,10 +102,9 @@ RateEvaluator<REAL>::RateEvaluator(Bfr::Tessellation const &tessellation,
 template <typename REAL>
 void RateEvaluator<REAL>::Evaluate(CellType const &type, REAL const *points,
                                    std::ptrdiff_t stride) {
-    Source const source = {type, nullptr, 0, points, stride, nullptr};
+    Source const source = {{type, nullptr, points, stride, nullptr}, 0};
     forEachEdge([&](int edge, int rate, int first) {
-        evaluateEdge(edge, rate, first);
-        evaluateVertex(edge, first);
+        evaluateBorder(edge, rate, first);
         if (_results[1]) {
             evaluateDerivativesOnEdge(source, edge, rate, first);
         }
@@ -134,13 +122,12 @@ void RateEvaluator<REAL>::Evaluate(PlainFaceType const &type) {
         RingCell const &cell = face.GetChild(child);
         REAL const *const points = values.GetPoints();
         values.FindChildIndices(face, child, indices);
-        return {cell.GetType(), &cell, child, points, std::ptrdiff_t(values.GetPaddedSize()),
-                indices.data()};
+        return {
+            {cell.GetType(), &cell, points, std::ptrdiff_t(values.GetPaddedSize()), indices.data()},
+            child};
     };
     forEachEdge([&](int edge, int rate, int first) {
-        evaluateEdge(edge, rate, first);
-        // The edge has made the points of all rings, and the vertex finds those of its own among them.
-        evaluateVertex(edge, first);
+        evaluateBorder(edge, rate, first);
         Source const source = getSource(std::size_t(edge) + 1);
         evaluateInside(source);
         if (_results[1]) {
@@ -162,16 +149,14 @@ void RateEvaluator<REAL>::forEachEdge(FUNCTION const &function) const {
     }
 }
 
+// Writes the points of an edge, and of the vertex where it begins.
 template <typename REAL>
-void RateEvaluator<REAL>::evaluateVertex(int edge, int first) const {
-    _border.EvaluateVertex(std::size_t(edge), getResult(0, first));
-}
-
-template <typename REAL>
-void RateEvaluator<REAL>::evaluateEdge(int edge, int rate, int first) const {
+void RateEvaluator<REAL>::evaluateBorder(int edge, int rate, int first) const {
     if (rate > 1) {
         _border.EvaluateRate(std::size_t(edge), rate, getResult(0, first + 1), _resultStride);
     }
+    // The edge has made the points of all rings, and the vertex finds those of its own among them.
+    _border.EvaluateVertex(std::size_t(edge), getResult(0, first));
 }
 
 template <typename REAL>
@@ -192,14 +177,15 @@ int RateEvaluator<REAL>::getFaceKey() const {
 // The shape of the face: plain ones are no half polygons.
 template <typename REAL>
 FaceShape RateEvaluator<REAL>::getShape(Source const &source) const {
-    return source.cell ? FaceShape(_tessellation.GetFaceSize()) : source.type.GetShape();
+    return source.places.ringCell ? FaceShape(_tessellation.GetFaceSize())
+                                  : source.places.type.GetShape();
 }
 
 template <typename REAL>
 void RateEvaluator<REAL>::evaluateInside(Source const &source, PatternOf of) {
     bool const areDerivatives = of == PatternOf::RateDerivatives;
     forEachBlock<Matrices>(
-        source.GetPatterns(), PatternTable::GetKind<REAL>(of),
+        source.places.GetPatterns(), PatternTable::GetKind<REAL>(of),
         std::array<int, 5>{getFaceKey(), int(source.child), int(_inner.GetSize()),
                            _inner.GetRate(0), _inner.GetRate(1)},
         _inner.GetSize(),
@@ -219,18 +205,18 @@ void RateEvaluator<REAL>::evaluateDerivativesOnEdge(Source const &source, int ed
     Bfr::Parameterization const parameterization = _tessellation.GetParameterization();
     FaceShape const shape = getShape(source);
     forEachBlock<Matrices>(
-        source.GetPatterns(), PatternTable::GetKind<REAL>(PatternOf::RateDerivativesOnEdge),
+        source.places.GetPatterns(), PatternTable::GetKind<REAL>(PatternOf::RateDerivativesOnEdge),
         std::array<int, 3>{getFaceKey(), edge, rate}, std::size_t(rate),
         [&](std::size_t begin, std::size_t end) {
             std::vector<BfrPlace> places;
             for (auto i = int(begin); i < int(end); ++i) {
                 BfrPlace const place = MakeBfrEdgePlace(parameterization, shape, edge, i, rate);
                 places.push_back(
-                    source.cell
+                    source.places.ringCell
                         ? MoveToChild(place, FindCellStep(shape, edge, place.point.coords), shape)
                         : place);
             }
-            return makeMatrices(source, places, true);
+            return Matrices{source.places.MakeMatrices(places, true), {}};
         },
         [&](Matrices const &matrices, std::size_t begin) {
             sumUp(source, matrices, true, first + int(begin));
@@ -242,71 +228,12 @@ template <typename REAL>
 typename RateEvaluator<REAL>::Matrices
 RateEvaluator<REAL>::makeInside(Source const &source, std::vector<BfrPlace> const &places,
                                 FaceShape shape, bool hasDerivatives) {
-    if (!source.cell) {
-        return makeMatrices(source, places, hasDerivatives);
+    if (!source.places.ringCell) {
+        return {source.places.MakeMatrices(places, hasDerivatives), {}};
     }
     std::vector<PlaceRun> runs;
-    std::vector<BfrPlace> const ofChild = selectPlaces(places, 0, source.child, shape, runs);
-    Matrices matrices = makeMatrices(source, ofChild, hasDerivatives);
-    matrices.runs = std::move(runs);
-    return matrices;
-}
-
-template <typename REAL>
-typename RateEvaluator<REAL>::Matrices
-RateEvaluator<REAL>::makeMatrices(Source const &source, std::vector<BfrPlace> const &places,
-                                  bool hasDerivatives) {
-    Matrices result;
-    for (Rows const &rows : findRows(source, places, hasDerivatives)) {
-        PlaceMatrix<REAL> &matrix =
-            result.matrices.emplace_back(rows.size(), rows.empty() ? 0 : rows[0].size());
-        for (std::size_t row = 0; row < rows.size(); ++row) {
-            matrix.Set(row, rows[row]);
-        }
-    }
-    return result;
-}
-
-// By place, the weights of what the source has: of the point, or of the derivative by Bfr's u, and of that by its v.
-template <typename REAL>
-std::vector<typename RateEvaluator<REAL>::Rows>
-RateEvaluator<REAL>::findRows(Source const &source, std::vector<BfrPlace> const &places,
-                              bool hasDerivatives) {
-    bool const isOfStep = source.cell && source.cell->IsInner();
-    CellStencil stencil(source.type, isOfStep ? StencilOf::Step : StencilOf::Points);
-    std::vector<Rows> result(hasDerivatives ? 2 : 1);
-    auto const add = [&](std::size_t kind, std::vector<double> const &weights) {
-        std::vector<double> &row = result[kind].emplace_back(weights);
-        if (source.cell) {
-            source.cell->GetPlaces().Order(weights, row);
-        }
-    };
-    std::vector<double> derivative;
-    for (BfrPlace const &place : places) {
-        stencil.Find(place.point, hasDerivatives);
-        if (!hasDerivatives) {
-            add(0, stencil.GetWeights());
-            continue;
-        }
-        std::vector<double> const *along[2] = {&stencil.GetDuWeights(), &stencil.GetDvWeights()};
-        // Vertices of the face have the derivatives of the face.
-        if (source.cell && !source.type.IsWhole() && place.point.coords == HalfCell::kCorners[0]) {
-            CellType::Derivatives const &ofFace = isOfStep
-                                                      ? source.type.GetParentDerivativesOfStep(0)
-                                                      : source.type.GetParentDerivatives(0);
-            along[0] = &ofFace.rows[0];
-            along[1] = &ofFace.rows[1];
-        }
-        for (std::size_t k = 0; k < 2; ++k) {
-            derivative.resize(along[0]->size());
-            for (std::size_t i = 0; i < derivative.size(); ++i) {
-                derivative[i] =
-                    place.toOwn[0][k] * (*along[0])[i] + place.toOwn[1][k] * (*along[1])[i];
-            }
-            add(k, derivative);
-        }
-    }
-    return result;
+    std::vector<BfrPlace> const ofChild = selectPlaces(places, source.child, shape, runs);
+    return {source.places.MakeMatrices(ofChild, hasDerivatives), std::move(runs)};
 }
 
 template <typename REAL>
@@ -316,13 +243,12 @@ void RateEvaluator<REAL>::sumUp(Source const &source, Matrices const &matrices, 
     if (matrices.matrices[0].GetNumPlaces() == 0) {
         return;
     }
-    std::size_t kind = areDerivatives ? 1 : 0;
-    for (PlaceMatrix<REAL> const &matrix : matrices.matrices) {
-        SumUpPlaces(matrix,
-                    {source.points, source.stride, _border.GetSize(), source.indices,
-                     getResult(kind++, firstPlace), _resultStride,
-                     matrices.runs.empty() ? nullptr : matrices.runs.data(), matrices.runs.size()});
+    REAL *results[2] = {};
+    for (std::size_t i = 0; i < matrices.matrices.size(); ++i) {
+        results[i] = getResult((areDerivatives ? 1 : 0) + i, firstPlace);
     }
+    source.places.Evaluate(matrices.matrices, _border.GetSize(), results, _resultStride,
+                           matrices.runs.empty() ? nullptr : &matrices.runs);
 }
 
 template class RateEvaluator<float>;

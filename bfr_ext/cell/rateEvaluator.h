@@ -4,6 +4,7 @@
 
 #include "bfrPlace.h"
 #include "borderEvaluator.h"
+#include "patchEvaluator.h"
 
 #include <opensubdiv/bfr/tessellation.h>
 
@@ -53,39 +54,24 @@ public:
     void Evaluate(PlainFaceType const &type);
 
 private:
-    // Sources of points: the points of a face, or the points of the rings that make a child of it.
+    // The face, or a child of it.
     struct Source {
-        PatternTable &GetPatterns() const {
-            return cell ? cell->GetPatterns() : type.GetPatterns();
-        }
-
-        CellType const &type;
-        RingCell const *cell; // null: the face
-        std::size_t child;    // of the face
-        REAL const *points;
-        std::ptrdiff_t stride;
-        int const *indices; // by column, null: all in turn
+        PlaceSource<REAL> places;
+        std::size_t child; // of the face
     };
-    // Matrices with a row for each place: for the points, or for the derivatives by u and v.
+    // Matrices with a row for each place.
     struct Matrices {
         std::size_t GetHeapSize() const { return GetHeapSizes(matrices, runs); }
 
-        std::vector<PlaceMatrix<REAL>> matrices;
+        typename PlaceSource<REAL>::Matrices matrices;
         std::vector<PlaceRun> runs; ///< none: all places in turn
     };
 
-    using Rows = std::vector<std::vector<double>>;
-
-    static std::vector<Rows> findRows(Source const &source, std::vector<BfrPlace> const &places,
-                                      bool hasDerivatives);
-    static Matrices makeMatrices(Source const &source, std::vector<BfrPlace> const &places,
-                                 bool hasDerivatives);
     static Matrices makeInside(Source const &source, std::vector<BfrPlace> const &places,
                                FaceShape shape, bool hasDerivatives);
     template <typename FUNCTION>
     void forEachEdge(FUNCTION const &function) const;
-    void evaluateVertex(int edge, int first) const;
-    void evaluateEdge(int edge, int rate, int first) const;
+    void evaluateBorder(int edge, int rate, int first) const;
     // The kind of face, with its parameterization.
     int getFaceKey() const;
     FaceShape getShape(Source const &source) const;

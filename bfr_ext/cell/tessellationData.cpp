@@ -196,7 +196,7 @@ bool TessellationData::SetTree(CellTree const &cells, Polyline const edges[],
     if (cells.GetNumCells() <= kMaxCellsOfPlan) {
         _cellPlans = std::make_unique<CellPlans>();
     }
-    return setCells(mesh);
+    return setCells(mesh, mesh.GetFaceVertices());
 }
 
 bool TessellationData::SetSection(FaceSections const &sections, int number,
@@ -209,15 +209,18 @@ bool TessellationData::SetSection(FaceSections const &sections, int number,
     section = Section{number, sections.GetNumSections(), {}};
     CellShape shape = {};
     CellTree cells = sections.MakeTree(number, &shape);
+    std::vector<CellMesh::Vertex> polygon;
+    for (int const vert : sections.GetPolygon(number)) {
+        polygon.push_back(sections.GetVertices()[std::size_t(vert)]);
+    }
+    auto const isOnEdge = [&](std::size_t side) {
+        return sections.AreOnEdge(polygon[side], polygon[(side + 1) % polygon.size()]);
+    };
     // The edges that it has a side on.
     std::vector<Polyline> edges(static_cast<std::size_t>(size));
-    std::vector<int> const polygon = sections.GetPolygon(number);
     for (std::size_t i = 0; i < polygon.size(); ++i) {
-        CellMesh::Vertex const &start = sections.GetVertices()[std::size_t(polygon[i])];
-        CellMesh::Vertex const &end =
-            sections.GetVertices()[std::size_t(polygon[(i + 1) % polygon.size()])];
-        if (sections.AreOnEdge(start, end)) {
-            int const edge = sections.FindEdge(start).edge;
+        if (isOnEdge(i)) {
+            int const edge = sections.FindEdge(polygon[i]).edge;
             edges[std::size_t(edge)] = sections.GetEdge(edge);
         }
     }
@@ -234,7 +237,17 @@ bool TessellationData::SetSection(FaceSections const &sections, int number,
     } else {
         _cellPlans = std::make_unique<CellPlans>();
     }
-    return setSectionCells(mesh, sections);
+    bool const areSet = setCells(mesh, polygon);
+    for (std::size_t i = 0; i < polygon.size(); ++i) {
+        EdgePlace<int> const onEdge = sections.FindEdge(polygon[i]);
+        if (onEdge.edge >= 0) {
+            int const first = firstEdgeCoords[i];
+            int const before = onEdge.end == 0 ? 0 : 1 + sections.CountPointsBefore(onEdge);
+            int const count = isOnEdge(i) ? firstEdgeCoords[i + 1] - first : 1;
+            section->border.push_back({onEdge.edge, before - 1, count, first});
+        }
+    }
+    return areSet;
 }
 
 bool TessellationData::setOptions(LevelTessellation::Options const &options) {
@@ -269,7 +282,7 @@ bool TessellationData::SetLevels(Parameterization const &ofFace, int numLevels, 
                                           : *std::max_element(ofEdges, ofEdges + size));
     }
     FaceShape const shape = GetFaceShape();
-    if (areTooMany(2 * (FaceSections::CountLeaves({shape, levels}) - 1))) {
+    if (areTooMany(2 * (FaceSections::CountLeaves(shape, levels.back()) - 1))) {
         return false;
     }
     std::vector<Polyline> edges;
@@ -278,7 +291,9 @@ bool TessellationData::SetLevels(Parameterization const &ofFace, int numLevels, 
         edges.emplace_back(GetEdgeLevel(std::size_t(edge)));
     }
     _cellPlans = std::make_unique<CellPlans>();
-    return setCells(CellMesh(CellTree(shape, levels.data(), levels.back()), edges.data()));
+    CellTree const cells(shape, levels.data(), levels.back());
+    CellMesh const mesh(cells, edges.data());
+    return setCells(mesh, mesh.GetFaceVertices());
 }
 
 // The highest of the places that a plan has.
@@ -381,39 +396,14 @@ std::vector<TessellationData::CellCorner> TessellationData::FindCornersOfDerivat
     return corners;
 }
 
-// All that the mesh has.
-bool TessellationData::setCells(CellMesh const &mesh) {
-    std::size_t const numVerts = mesh.GetVertices().size();
-    std::vector<bool> isOnBoundary(numVerts);
-    std::vector<int> order;
-    order.reserve(numVerts);
-    for (int edge = 0; edge < GetFaceSize(); ++edge) {
-        std::vector<int> const edgeVerts = mesh.GetEdgeVertices(edge);
-        firstEdgeCoords.push_back(int(order.size()));
-        order.insert(order.end(), edgeVerts.begin(), edgeVerts.end() - 1);
-    }
-    firstEdgeCoords.push_back(int(order.size()));
-    for (int const vert : order) {
-        isOnBoundary[std::size_t(vert)] = true;
-    }
-    for (std::size_t vert = 0; vert < numVerts; ++vert) {
-        if (!isOnBoundary[vert]) {
-            order.push_back(int(vert));
-        }
-    }
-    return setFacets(mesh, setPlaces(mesh, order));
-}
-
-// Sets the places of a section's polygons; the mesh has more beside them.
-bool TessellationData::setSectionCells(CellMesh const &mesh, FaceSections const &sections) {
-    std::vector<int> const polygon = sections.GetPolygon(section->number);
+// Sets the places of a polygon: of the face, or of a section, beside which the mesh has more.
+bool TessellationData::setCells(CellMesh const &mesh,
+                                std::vector<CellMesh::Vertex> const &polygon) {
     std::vector<int> order;
     for (std::size_t i = 0; i < polygon.size(); ++i) {
-        CellMesh::Vertex const &start = sections.GetVertices()[std::size_t(polygon[i])];
-        CellMesh::Vertex const &end =
-            sections.GetVertices()[std::size_t(polygon[(i + 1) % polygon.size()])];
-        int const first = int(order.size());
-        firstEdgeCoords.push_back(first);
+        CellMesh::Vertex const &start = polygon[i];
+        CellMesh::Vertex const &end = polygon[(i + 1) % polygon.size()];
+        firstEdgeCoords.push_back(int(order.size()));
         order.push_back(mesh.Find(start.sector, {start.a, start.b}));
         // If two vertices lie in different sectors, one of them lies on the line between the sectors.
         int const size = GetFaceSize();
@@ -426,21 +416,16 @@ bool TessellationData::setSectionCells(CellMesh const &mesh, FaceSections const 
         } else {
             mesh.AppendBetween(end.sector, {0, start.a}, {end.a, end.b}, order);
         }
-        EdgePlace<int> const onEdge = sections.FindEdge(start);
-        if (onEdge.edge < 0) {
-            continue;
-        }
-        int const before = onEdge.end == 0 ? 0 : 1 + sections.CountPointsBefore(onEdge);
-        int const count = sections.AreOnEdge(start, end) ? int(order.size()) - first : 1;
-        section->border.push_back({onEdge.edge, before - 1, count, first});
     }
     firstEdgeCoords.push_back(int(order.size()));
-    std::vector<bool> isInside(mesh.GetVertices().size());
-    mesh.ForEachCell([&](CellMesh::Polygon &cell) {
-        for (int const vert : cell.verts) {
-            isInside[std::size_t(vert)] = true;
-        }
-    });
+    std::vector<bool> isInside(mesh.GetVertices().size(), !section);
+    if (section) {
+        mesh.ForEachCell([&](CellMesh::Polygon &cell) {
+            for (int const vert : cell.verts) {
+                isInside[std::size_t(vert)] = true;
+            }
+        });
+    }
     for (int const vert : order) {
         isInside[std::size_t(vert)] = false;
     }

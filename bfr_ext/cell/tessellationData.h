@@ -121,8 +121,7 @@ private:
     };
 
     bool setOptions(LevelTessellation::Options const &options);
-    bool setCells(CellMesh const &mesh);
-    bool setSectionCells(CellMesh const &mesh, FaceSections const &sections);
+    bool setCells(CellMesh const &mesh, std::vector<CellMesh::Vertex> const &polygon);
     std::vector<int> setPlaces(CellMesh const &mesh, std::vector<int> const &order);
     bool setFacets(CellMesh const &mesh, std::vector<int> const &placesOfVertices);
     static void sortByCell(std::vector<CellCorner> &corners);

@@ -25,9 +25,20 @@ public:
     /// Whether some types take so much that the cache begins anew.
     bool IsFull(CellTypes &types) const { return types.GetMemory().Get() > _maxMemory / 2; }
     /// The types to find others among.
-    std::shared_ptr<CellTypes> Get();
+    std::shared_ptr<CellTypes> Get() {
+        std::shared_ptr<CellTypes> before; // goes without the lock
+        std::lock_guard<std::mutex> const lock(_mutex);
+        if (!_types || IsFull(*_types)) {
+            before = std::move(_types);
+            _types = std::make_shared<CellTypes>(_memory);
+        }
+        return _types;
+    }
     /// How many these are.
-    std::size_t GetNumTypes() const;
+    std::size_t GetNumTypes() const {
+        std::lock_guard<std::mutex> const lock(_mutex);
+        return _types ? _types->GetSize() : 0;
+    }
 
 private:
     std::size_t const _maxMemory;

@@ -47,7 +47,8 @@ CellPatch makeCell() {
     patch.numHexagonalSteps = 4;
     patch.hasFirstLineMasks = true;
     patch.sectorCorners = {{2, 5.5f, 0.125f, SectorCorner::kFarFromOne}};
-    patch.irregularCorners = {{4, 7, 0.5f, IrregularCorner::kBehindQuad, FarExt::FacesAround::Others}};
+    patch.irregularCorners = {
+        {4, 7, 0.5f, IrregularCorner::kBehindQuad, FarExt::FacesAround::Others}};
     patch.lineRowCorners = {{1, 3.5f, LineFace::OnLine, 2}};
     patch.quadLineCorners.resize(1);
     std::memset(&patch.quadLineCorners[0], 0x5a, sizeof(QuadLineCorner));
