@@ -267,7 +267,7 @@ internal::CellType const *SurfaceFactory::findType(internal::CellTypes &types, i
     GatherBaseCell(faces, ownFace, rules.sdcOptions, cell);
     std::size_t const numPoints = cell.patch.sources.size();
     points.assign(cell.patch.sources.begin(), cell.patch.sources.end());
-    internal::CellType const &type = types.Find(std::move(cell), rules);
+    internal::CellType const &type = types.Find(cell, rules);
     int const size = faces.GetShape(ownFace).size;
     int const withManyFaces = findVertexOfManyFaces(faces, ownFace);
     if (withManyFaces < size && !type.HasCorners()) {

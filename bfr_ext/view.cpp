@@ -714,7 +714,6 @@ int View::findLevels(CellTree const &tree, int levels[]) {
 CellForest View::makeForest(SurfaceFactory const &factory, ViewBounds *viewBounds,
                             internal::PointArray const &meshPoints, CellForest const *previous,
                             Counts *counts, FarExt::CallStatus *status) const {
-    using Index = Far::Index;
     FarExt::SurfaceFaces const &faces = factory.GetFaces();
     // Diagonals between surface faces are infinitely sharp.
     auto const isInfSharp = [&](Index edge) {

@@ -151,28 +151,28 @@ std::vector<int> RingCell::GetKey() const {
     return key;
 }
 
-std::unique_ptr<RingCell const> RingCells::make(CellPatch cell,
+std::unique_ptr<RingCell const> RingCells::make(CellPatch const &cell,
                                                 std::vector<RingLayout> const &rings) {
     RingPlaces points(cell.patch.sources, rings);
     if (!_masks.AreUsed()) {
-        CellType const &type = _types.Find(std::move(cell), GetRules());
+        CellType const &type = _types.Find(cell, GetRules());
         return std::make_unique<RingCell const>(type, RingStep::First, std::move(points));
     }
     CellRefinement refinement = refine(cell, GetRules());
     std::vector<RingLayout> const inner = FindInnerLayouts(cell.patch, rings);
     if (cell.kind == CellKind::Vertex) {
         points = RingPlaces(refinement.children[0].patch.sources, inner);
-        CellType const &type = _types.Find(std::move(refinement.children[0]), GetRules());
+        CellType const &type = _types.Find(refinement.children[0], GetRules());
         return std::make_unique<RingCell const>(type, RingStep::Second, std::move(points));
     }
     RingPlaces ofStep(findStepVertices(refinement), inner);
-    CellType const &type = _types.Find(std::move(cell), GetRules());
+    CellType const &type = _types.Find(cell, GetRules());
     return std::make_unique<RingCell const>(type, std::move(points), std::move(ofStep));
 }
 
 // Rings that differ only where the cell does not depend on them are equal.
-RingCell const &RingCells::find(CellPatch cell, std::vector<RingLayout> const &rings) {
-    std::unique_ptr<RingCell const> ringCell = make(std::move(cell), rings);
+RingCell const &RingCells::find(CellPatch const &cell, std::vector<RingLayout> const &rings) {
+    std::unique_ptr<RingCell const> ringCell = make(cell, rings);
     CellType const &type = ringCell->GetType();
     std::vector<int> const key = ringCell->GetKey();
     constexpr int kKind = PatternTable::GetKind<double>(PatternOf::RingCell);

@@ -178,7 +178,7 @@ public:
     RingCell const &Find(FarExt::internal::CellKind kind, Key const &key, MAKE const &make) {
         return *find<RingCell const *>(_found, int(kind), key, [&]() -> RingCell const * {
             auto [cell, layouts] = make();
-            return &find(std::move(cell), layouts);
+            return &find(cell, layouts);
         });
     }
     /// Finds what make() gave of a face whose vertices have rings that are told by \p key.
@@ -200,9 +200,10 @@ private:
     static FOUND const &find(PatternTable &table, int kind, Key const &key, MAKE const &make) {
         return table.Get<FOUND>(kind, key.data(), key.data() + key.size(), make);
     }
-    std::unique_ptr<RingCell const> make(FarExt::internal::CellPatch cell,
+    std::unique_ptr<RingCell const> make(FarExt::internal::CellPatch const &cell,
                                          std::vector<RingLayout> const &rings);
-    RingCell const &find(FarExt::internal::CellPatch cell, std::vector<RingLayout> const &rings);
+    RingCell const &find(FarExt::internal::CellPatch const &cell,
+                         std::vector<RingLayout> const &rings);
 
     CellTypes &_types;
     InnerMasks _masks;
