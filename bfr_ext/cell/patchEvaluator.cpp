@@ -62,13 +62,15 @@ PlaceSource<REAL>::MakeMatrices(std::vector<BfrPlace> const &places, bool hasDer
     CellStencil stencil(type, isOfStep ? StencilOf::Step : StencilOf::Points);
     std::size_t const numColumns =
         ringCell ? ringCell->GetColumns().size() : std::size_t(type.GetNumPoints());
-    Matrices matrices(hasDerivatives ? 2 : 1, PlaceMatrix<REAL>(places.size(), numColumns));
+    Matrices result = {{}, hasDerivatives ? std::size_t(2) : std::size_t(1)};
+    std::fill_n(result.matrices.begin(), result.count,
+                PlaceMatrix<REAL>(places.size(), numColumns));
     std::vector<double> ordered;
     auto const set = [&](std::size_t kind, std::size_t row, std::vector<double> const &weights) {
         if (ringCell) {
             ringCell->GetPlaces().Order(weights, ordered);
         }
-        matrices[kind].Set(row, ringCell ? ordered : weights);
+        result.matrices[kind].Set(row, ringCell ? ordered : weights);
     };
     std::vector<double> derivative;
     for (std::size_t row = 0; row < places.size(); ++row) {
@@ -95,16 +97,16 @@ PlaceSource<REAL>::MakeMatrices(std::vector<BfrPlace> const &places, bool hasDer
             set(k, row, derivative);
         }
     }
-    return matrices;
+    return result;
 }
 
 template <typename REAL>
 void PlaceSource<REAL>::Evaluate(Matrices const &matrices, std::size_t size, REAL *const *results,
                                  std::ptrdiff_t resultStride,
                                  std::vector<PlaceRun> const *runs) const {
-    for (std::size_t i = 0; i < matrices.size(); ++i) {
-        SumUpPlaces(matrices[i], {points, stride, size, indices, results[i], resultStride,
-                                  runs ? runs->data() : nullptr, runs ? runs->size() : 0});
+    for (std::size_t i = 0; i < matrices.count; ++i) {
+        SumUpPlaces(matrices.matrices[i], {points, stride, size, indices, results[i], resultStride,
+                                           runs ? runs->data() : nullptr, runs ? runs->size() : 0});
     }
 }
 

@@ -6,6 +6,7 @@
 #include "cellPlan.h"
 #include "plainFace.h"
 
+#include <array>
 #include <deque>
 #include <vector>
 
@@ -14,7 +15,13 @@ namespace OpenSubdivHex::BfrExt::internal {
 /// \brief What the places of a cell are sums of: the points of its type or, in a child of a plain face, points of rings.
 template <typename REAL>
 struct PlaceSource {
-    using Matrices = std::vector<PlaceMatrix<REAL>>;
+    /// One for points, or two for derivatives; not in a vector, so that a look-up reads few lines of the cache.
+    struct Matrices {
+        std::size_t GetHeapSize() const { return internal::GetHeapSize(matrices); }
+
+        std::array<PlaceMatrix<REAL>, 2> matrices;
+        std::size_t count;
+    };
 
     /// Where matrices of the sources are kept.
     PatternTable &GetPatterns() const {

@@ -240,14 +240,14 @@ template <typename REAL>
 void RateEvaluator<REAL>::sumUp(Source const &source, Matrices const &matrices, bool areDerivatives,
                                 int firstPlace) const {
     // No runs would stand for all places.
-    if (matrices.matrices[0].GetNumPlaces() == 0) {
+    if (matrices.ofPlaces.matrices[0].GetNumPlaces() == 0) {
         return;
     }
     REAL *results[2] = {};
-    for (std::size_t i = 0; i < matrices.matrices.size(); ++i) {
+    for (std::size_t i = 0; i < matrices.ofPlaces.count; ++i) {
         results[i] = getResult((areDerivatives ? 1 : 0) + i, firstPlace);
     }
-    source.places.Evaluate(matrices.matrices, _border.GetSize(), results, _resultStride,
+    source.places.Evaluate(matrices.ofPlaces, _border.GetSize(), results, _resultStride,
                            matrices.runs.empty() ? nullptr : &matrices.runs);
 }
 

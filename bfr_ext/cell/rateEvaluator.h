@@ -61,9 +61,9 @@ private:
     };
     // Matrices with a row for each place.
     struct Matrices {
-        std::size_t GetHeapSize() const { return GetHeapSizes(matrices, runs); }
+        std::size_t GetHeapSize() const { return GetHeapSizes(ofPlaces, runs); }
 
-        typename PlaceSource<REAL>::Matrices matrices;
+        typename PlaceSource<REAL>::Matrices ofPlaces;
         std::vector<PlaceRun> runs; ///< none: all places in turn
     };
 

@@ -50,9 +50,11 @@ private:
     static void findIndices(RingPoints const &points, int const *places, std::size_t count,
                             int *to) {
         constexpr std::size_t kStep = 4;
+        // Places behind the last point of the ring count from its first one; without a comparison, with which compilers
+        // find one place at a time.
         auto const find = [&](int place) {
-            int const offset = points.offset + place;
-            return points.first + (offset < points.count ? offset : offset - points.count);
+            int const behind = points.offset + place - points.count;
+            return points.first + behind + (points.count & (behind >> 31));
         };
         auto const findFour = [&](std::size_t first) {
             int found[kStep];

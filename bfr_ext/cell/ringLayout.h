@@ -67,7 +67,7 @@ struct Ring {
     }
     /// The face that comes first in the vertex's order.
     int GetFirstFace(int turn) const { return turn == 0 ? 0 : GetNumFaces() - turn; }
-    /// rief Where in the ring a block begins.
+    /// \brief Where in the ring a block begins.
     ///
     /// \param turn  of face 0
     /// \param face  not before -1
