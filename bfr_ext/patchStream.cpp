@@ -6,6 +6,7 @@
 
 #include "far_ext/executor.h"
 #include "far_ext/stencil/interpolationMode.h"
+#include "far_ext/vtr/hash.h"
 #include "far_ext/vtr/parallel.h"
 #include "far_ext/vtr/report.h"
 
@@ -192,8 +193,7 @@ Far::Index StreamData::takeFaces(AskedFaces const &faces, Index next, Batch &bat
         numLeaves += FaceSections::CountLeaves(ofFace.shape, ofFace.levels.back());
         std::size_t hash = ofFace.shape.isHalf ? 1 : 0;
         for (int const level : ofFace.levels) {
-            hash = (hash ^ std::size_t(level + 1)) * 0x9e3779b97f4a7c15;
-            hash ^= hash >> 29;
+            hash = FarExt::internal::AddToHash(hash, std::uint64_t(level + 1));
         }
         order.push_back({hash, face});
         if (memory <= plans.GetMaxMemory() && hashes.insert(hash).second) {

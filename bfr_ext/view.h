@@ -7,14 +7,39 @@
 #include "surfaceFactory.h"
 #include "viewBounds.h"
 
+#include <array>
+#include <cstddef>
 #include <memory>
 #include <vector>
 
 namespace OpenSubdivHex::BfrExt {
 
 namespace internal {
+
 struct ViewData;
-}
+
+/// Points of either precision, of which three numbers are read.
+struct PointArray {
+    PointArray(float const *points, std::ptrdiff_t strideOfPoints)
+        : floats(points), stride(strideOfPoints) {}
+    PointArray(double const *points, std::ptrdiff_t strideOfPoints)
+        : doubles(points), stride(strideOfPoints) {}
+
+    std::array<double, 3> operator[](std::ptrdiff_t point) const {
+        if (floats) {
+            float const *const p = floats + point * stride;
+            return {double(p[0]), double(p[1]), double(p[2])};
+        }
+        double const *const p = doubles + point * stride;
+        return {p[0], p[1], p[2]};
+    }
+
+    float const *floats = nullptr;
+    double const *doubles = nullptr;
+    std::ptrdiff_t stride;
+};
+
+} // namespace internal
 
 /// The visibility of a cell in a view.
 enum class CellVisibility : unsigned char {

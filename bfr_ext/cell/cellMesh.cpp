@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cellMesh.h"
 
+#include "far_ext/vtr/hash.h"
+
 #include <algorithm>
 #include <map>
 
@@ -9,8 +11,7 @@ namespace OpenSubdivHex::BfrExt::internal {
 std::size_t CellMesh::Hash::operator()(std::array<std::int32_t, 3> const &key) const {
     std::uint64_t hash = std::uint64_t(key[0]);
     for (std::size_t i = 1; i < 3; ++i) {
-        hash = (hash ^ std::uint64_t(key[i])) * 0x9e3779b97f4a7c15;
-        hash ^= hash >> 31;
+        hash = FarExt::internal::AddToHash(hash, std::uint64_t(key[i]));
     }
     return std::size_t(hash);
 }

@@ -15,7 +15,9 @@ namespace OpenSubdivHex::BfrExt::internal {
 /// \brief What the places of a cell are sums of: the points of its type or, in a child of a plain face, points of rings.
 template <typename REAL>
 struct PlaceSource {
-    /// One for points, or two for derivatives; not in a vector, so that a look-up reads few lines of the cache.
+    /// \brief One matrix for points, or two for derivatives.
+    ///
+    /// They lie in an array: a look-up reads fewer lines of the cache than with a vector.
     struct Matrices {
         std::size_t GetHeapSize() const { return internal::GetHeapSize(matrices); }
 

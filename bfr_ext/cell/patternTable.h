@@ -5,6 +5,8 @@
 #include "entryTable.h"
 #include "memoryCount.h"
 
+#include "far_ext/vtr/hash.h"
+
 #include <algorithm>
 #include <cstddef>
 #include <memory>
@@ -99,10 +101,9 @@ private:
     };
 
     static std::size_t getHash(int kind, int const *begin, int const *end) {
-        auto hash = std::size_t(kind);
+        auto hash = std::uint64_t(kind);
         for (; begin != end; ++begin) {
-            hash = (hash ^ std::size_t(*begin)) * 0x9e3779b97f4a7c15;
-            hash ^= hash >> 29;
+            hash = FarExt::internal::AddToHash(hash, std::uint64_t(*begin));
         }
         return hash;
     }

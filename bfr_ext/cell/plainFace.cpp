@@ -3,6 +3,8 @@
 
 #include "patchCorners.h"
 
+#include "far_ext/vtr/hash.h"
+
 #include <algorithm>
 #include <cstring>
 #include <new>
@@ -63,8 +65,7 @@ std::size_t PlainFaceKey::GetHash() const {
         if (_size - i < kWord) { // the rest is of other keys
             word &= (std::uint64_t(1) << 8 * (_size - i)) - 1;
         }
-        hash = (hash ^ word) * 0x9e3779b97f4a7c15;
-        hash ^= hash >> 29;
+        hash = FarExt::internal::AddToHash(hash, word);
     }
     return hash;
 }

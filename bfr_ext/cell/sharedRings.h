@@ -22,7 +22,7 @@ namespace Far = OpenSubdiv::Far;
 template <typename REAL>
 class SharedRings {
 public:
-    /// Of the points; up to kNumEntries vertices take 24 more each.
+    /// Bytes of the points; up to kNumEntries vertices take 24 more each.
     static constexpr std::size_t kNumBytes = std::size_t(1) << 20;
 
     /// Whether the rings of a face with so many points stay until the face is done.

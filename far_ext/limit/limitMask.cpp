@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "limitMask.h"
 
+#include "far_ext/vtr/hash.h"
 #include "far_ext/vtr/lineFeatures.h"
 #include "far_ext/vtr/pi.h"
 #include "patchCycle.h"
@@ -550,8 +551,7 @@ LimitMask makeFreeBoundaryMask(Level const &level) {
 std::size_t LimitMaskFinder::Hash::operator()(std::vector<int> const &signature) const {
     std::uint64_t hash = signature.size();
     for (int const number : signature) {
-        hash = (hash ^ std::uint32_t(number)) * 0x9e3779b97f4a7c15;
-        hash ^= hash >> 29;
+        hash = AddToHash(hash, std::uint64_t(number));
     }
     return std::size_t(hash);
 }
