@@ -193,7 +193,7 @@ Far::Index StreamData::takeFaces(AskedFaces const &faces, Index next, Batch &bat
         numLeaves += FaceSections::CountLeaves(ofFace.shape, ofFace.levels.back());
         std::size_t hash = ofFace.shape.isHalf ? 1 : 0;
         for (int const level : ofFace.levels) {
-            hash = FarExt::internal::AddToHash(hash, std::uint64_t(level + 1));
+            hash = FarExt::internal::AddToHash(hash, 1 + std::uint64_t(level));
         }
         order.push_back({hash, face});
         if (memory <= plans.GetMaxMemory() && hashes.insert(hash).second) {
