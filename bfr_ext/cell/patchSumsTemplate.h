@@ -155,10 +155,8 @@ public:
     /// \param size, stride  integral constants where they are known
     template <typename SIZE, typename STRIDE>
     OPENSUBDIVHEX_INLINE void Write(int first, SIZE size, STRIDE stride) const {
-        ColumnLanes sums[kNumSums][kNumPointLanes];
-        for (auto &sum : sums) {
-            std::fill(std::begin(sum), std::end(sum), ColumnLanes{});
-        }
+        constexpr std::make_index_sequence<kNumSums> kAllSums{};
+        ColumnSums sums[kNumSums] = {};
         int const *columns = _all.block.columns;
         REAL const *rows = _all.block.weights;
         for (int left = _all.block.numColumns; left > 0; left -= kMaxColumns) {
@@ -170,17 +168,11 @@ public:
             for (int i = 0; i < numGroups; ++i, columns += kGroup) {
                 ColumnLanes numbers[kNumPointLanes];
                 PointColumns<REAL>::Load(_all.points + first, stride, size, columns, numbers);
-                for (int sum = 0; sum < kNumSums; ++sum) {
-                    for (int k = 0; k < size; ++k) {
-                        Columns::AddProducts(sums[sum][k], weights[i][sum], numbers[k]);
-                    }
-                }
+                addProducts(weights[i], numbers, size, sums, kAllSums);
             }
         }
         typename Point::Lanes bySt[kNumSums];
-        for (int i = 0; i < kNumSums; ++i) {
-            bySt[i] = PointColumns<REAL>::SumUp(sums[i]);
-        }
+        sumUp(sums, bySt, kAllSums);
         // Adds some of these by factors.
         auto const write = [&](int result, auto const &...factors) {
             typename Point::Lanes sum{};
@@ -210,6 +202,7 @@ public:
 private:
     using Columns = typename PointColumns<REAL>::Columns;
     using ColumnLanes = typename Columns::Lanes;
+    using ColumnSums = typename PointColumns<REAL>::Numbers;
     using Point = typename PointColumns<REAL>::Point;
     static constexpr int kGroup = PatchBlock<REAL>::kGroup;
     static constexpr int kMaxColumns = 8 * kGroup; // whose weights are kept
@@ -217,6 +210,25 @@ private:
     /// The point; its derivatives by s, t; by s twice, both, and t twice.
     static constexpr int kNumSums = NUM_DERIVATIVES == 0 ? 1 : NUM_DERIVATIVES == 1 ? 3 : 6;
     static constexpr int kOrders[6][2] = {{0, 0}, {1, 0}, {0, 1}, {2, 0}, {1, 1}, {0, 2}};
+
+    // Indices of sums are constants, without which GCC would keep sums in memory.
+    template <typename SIZE, std::size_t... SUM>
+    OPENSUBDIVHEX_INLINE static void
+    addProducts(ColumnLanes const (&weights)[kNumSums], ColumnLanes const (&numbers)[kNumPointLanes],
+                SIZE size, ColumnSums (&sums)[kNumSums], std::index_sequence<SUM...> /*all*/) {
+        (Columns::AddProducts(sums[SUM][0], weights[SUM], numbers[0]), ...);
+        (Columns::AddProducts(sums[SUM][1], weights[SUM], numbers[1]), ...);
+        (Columns::AddProducts(sums[SUM][2], weights[SUM], numbers[2]), ...);
+        if (size > 3) {
+            (Columns::AddProducts(sums[SUM][3], weights[SUM], numbers[3]), ...);
+        }
+    }
+    template <std::size_t... SUM>
+    OPENSUBDIVHEX_INLINE static void sumUp(ColumnSums const (&sums)[kNumSums],
+                                           typename Point::Lanes (&bySt)[kNumSums],
+                                           std::index_sequence<SUM...> /*all*/) {
+        ((bySt[SUM] = PointColumns<REAL>::SumUp(sums[SUM])), ...);
+    }
 
     OPENSUBDIVHEX_INLINE void weighColumns(REAL const *rows,
                                            ColumnLanes (&weights)[kNumSums]) const {
