@@ -131,6 +131,35 @@ struct PatchCubics {
     REAL ofOrder[3][4];
 };
 
+/// \brief Some of the points of a block, number by number.
+template <typename REAL>
+class BlockPoints {
+public:
+    static constexpr int kGroup = PatchBlock<REAL>::kGroup;
+    static constexpr int kMaxGroups = 8;
+
+    /// \param first         the first group
+    /// \param size, stride  as of PatchKernel::Write()
+    template <typename SIZE, typename STRIDE>
+    OPENSUBDIVHEX_INLINE void Load(PatchBlock<REAL> const &block, int first, REAL const *points,
+                                   SIZE size, STRIDE stride) {
+        _numGroups = std::min(kMaxGroups, block.numColumns / kGroup - first);
+        int const *columns = block.columns + first * kGroup;
+        for (int i = 0; i < _numGroups; ++i, columns += kGroup) {
+            PointColumns<REAL>::Load(points, stride, size, columns, _numbers[i]);
+        }
+    }
+
+    int GetNumGroups() const { return _numGroups; }
+    typename PointColumns<REAL>::Numbers const &operator[](int group) const {
+        return _numbers[group];
+    }
+
+private:
+    int _numGroups;
+    typename PointColumns<REAL>::Numbers _numbers[kMaxGroups];
+};
+
 /// \brief The point of a patch and its derivatives, as far as NUM_DERIVATIVES asks.
 ///
 /// The rows of a block are weighed along s, then along t, and the columns by the result.
@@ -152,24 +181,26 @@ public:
 
     /// Writes \p size numbers of the results, no more than four, from the first one on.
     ///
+    /// \param points        those of the block, from the first one on
     /// \param size, stride  integral constants where they are known
     template <typename SIZE, typename STRIDE>
-    OPENSUBDIVHEX_INLINE void Write(int first, SIZE size, STRIDE stride) const {
+    OPENSUBDIVHEX_INLINE void Write(BlockPoints<REAL> &points, int first, SIZE size,
+                                    STRIDE stride) const {
         constexpr std::make_index_sequence<kNumSums> kAllSums{};
         ColumnSums sums[kNumSums] = {};
-        int const *columns = _all.block.columns;
         REAL const *rows = _all.block.weights;
-        for (int left = _all.block.numColumns; left > 0; left -= kMaxColumns) {
-            ColumnLanes weights[kMaxColumns / kGroup][kNumSums];
-            int const numGroups = std::min(kMaxColumns, left) / kGroup;
-            for (int i = 0; i < numGroups; ++i, rows += kNumPatchPoints * kGroup) {
-                weighColumns(rows, weights[i]);
+        int const numGroups = _all.block.numColumns / kGroup;
+        for (int group = 0;;) {
+            for (int i = 0; i < points.GetNumGroups(); ++i, rows += kNumPatchPoints * kGroup) {
+                ColumnLanes weights[kNumSums] = {};
+                weighColumns(rows, weights);
+                addProducts(weights, points[i], size, sums, kAllSums);
             }
-            for (int i = 0; i < numGroups; ++i, columns += kGroup) {
-                ColumnLanes numbers[kNumPointLanes];
-                PointColumns<REAL>::Load(_all.points + first, stride, size, columns, numbers);
-                addProducts(weights[i], numbers, size, sums, kAllSums);
+            group += points.GetNumGroups();
+            if (group >= numGroups) {
+                break;
             }
+            points.Load(_all.block, group, _all.points + first, size, stride);
         }
         typename Point::Lanes bySt[kNumSums];
         sumUp(sums, bySt, kAllSums);
@@ -205,7 +236,6 @@ private:
     using ColumnSums = typename PointColumns<REAL>::Numbers;
     using Point = typename PointColumns<REAL>::Point;
     static constexpr int kGroup = PatchBlock<REAL>::kGroup;
-    static constexpr int kMaxColumns = 8 * kGroup; // whose weights are kept
 
     /// The point; its derivatives by s, t; by s twice, both, and t twice.
     static constexpr int kNumSums = NUM_DERIVATIVES == 0 ? 1 : NUM_DERIVATIVES == 1 ? 3 : 6;
@@ -270,14 +300,20 @@ private:
 
 template <int NUM_DERIVATIVES, typename REAL>
 void sumUpPatch(PatchSums<REAL> const &sums) {
-    PatchKernel<NUM_DERIVATIVES, REAL> const kernel(sums);
+    // Points are there by the time that the place is found.
     if (sums.size == 3 && sums.stride == 3) { // by far the most
         constexpr std::integral_constant<int, 3> kThree{};
-        kernel.Write(0, kThree, kThree);
+        BlockPoints<REAL> points;
+        points.Load(sums.block, 0, sums.points, kThree, kThree);
+        PatchKernel<NUM_DERIVATIVES, REAL>(sums).Write(points, 0, kThree, kThree);
         return;
     }
+    PatchKernel<NUM_DERIVATIVES, REAL> const kernel(sums);
     for (int first = 0; first < sums.size; first += kNumPointLanes) {
-        kernel.Write(first, std::min(kNumPointLanes, sums.size - first), sums.stride);
+        int const size = std::min(kNumPointLanes, sums.size - first);
+        BlockPoints<REAL> points;
+        points.Load(sums.block, 0, sums.points + first, size, sums.stride);
+        kernel.Write(points, first, size, sums.stride);
     }
 }
 
