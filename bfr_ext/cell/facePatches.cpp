@@ -9,6 +9,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <numeric>
 #include <type_traits>
 #include <utility>
@@ -94,12 +95,37 @@ std::vector<std::vector<double>> findRows(CellType const &type, int steps, Corne
     return rows;
 }
 
-// Whether some rows weigh a column by more than rounding; weights that are not numbers do.
-bool isUsed(std::vector<double> const *rows, std::size_t numRows, std::size_t column) {
-    constexpr double kRounding = 1e-15;
-    return !std::all_of(rows, rows + numRows, [&](std::vector<double> const &row) {
-        return std::abs(row[column]) <= kRounding;
+// Returns the columns that the points of a patch have.  Those left out weigh no more than rounding, all together; what they
+// weigh is added to the column that weighs most, so that sums of weights stay.
+template <typename REAL>
+std::vector<int> takeColumns(std::vector<double> *rows) {
+    constexpr double kRounding = 32 * std::numeric_limits<REAL>::epsilon();
+    std::vector<double> weights(rows->size(), 0);
+    for (std::size_t column = 0; column < weights.size(); ++column) {
+        for (int row = 0; row < kNumPatchPoints; ++row) {
+            double const weight = std::abs(rows[row][column]);
+            // One that is no number weighs most.
+            weights[column] = weight <= weights[column] ? weights[column]
+                              : std::isnan(weight)      ? std::numeric_limits<double>::infinity()
+                                                        : weight;
+        }
+    }
+    std::vector<int> columns(weights.size());
+    std::iota(columns.begin(), columns.end(), 0);
+    std::stable_sort(columns.begin(), columns.end(), [&](int a, int b) {
+        return weights[std::size_t(a)] > weights[std::size_t(b)];
     });
+    auto const first = std::size_t(columns[0]);
+    for (double left = kRounding - weights[std::size_t(columns.back())]; left >= 0;
+         left -= weights[std::size_t(columns.back())]) {
+        auto const last = std::size_t(columns.back());
+        columns.pop_back();
+        for (int row = 0; row < kNumPatchPoints; ++row) {
+            rows[row][first] += rows[row][last];
+        }
+    }
+    std::sort(columns.begin(), columns.end());
+    return columns;
 }
 
 // Returns the patches that cells of the type have some levels on, where their corners are as old.
@@ -647,16 +673,13 @@ OPENSUBDIVHEX_INLINE void prefetch([[maybe_unused]] T const *numbers,
 } // namespace
 
 template <typename REAL>
-PatchRows<REAL>::PatchRows(std::vector<std::vector<double>> const &rows) {
+PatchRows<REAL>::PatchRows(std::vector<std::vector<double>> rows) {
     std::vector<std::size_t> firstWeights;
     for (std::size_t first = 0; first < rows.size(); first += kNumPatchPoints) {
-        std::vector<double> const *const points = &rows[first];
+        std::vector<double> *const points = &rows[first];
         std::size_t const firstColumn = _columns.size();
-        for (std::size_t column = 0; column < points->size(); ++column) {
-            if (isUsed(points, kNumPatchPoints, column)) {
-                _columns.push_back(int(column));
-            }
-        }
+        std::vector<int> const used = takeColumns<REAL>(points);
+        _columns.insert(_columns.end(), used.begin(), used.end());
         int const numUsed = int(_columns.size() - firstColumn);
         int const numColumns = PatchBlock<REAL>::GetPaddedSize(numUsed);
         _columns.resize(firstColumn + std::size_t(numColumns), _columns[firstColumn]);

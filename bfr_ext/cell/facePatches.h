@@ -31,7 +31,7 @@ public:
     /// None.
     PatchRows() = default;
     /// \param rows  by patch those of its kNumPatchPoints points, weights of all points of the cell
-    explicit PatchRows(std::vector<std::vector<double>> const &rows);
+    explicit PatchRows(std::vector<std::vector<double>> rows);
 
     std::size_t GetHeapSize() const { return GetHeapSizes(_blocks, _columns, _weights); }
     std::vector<PatchBlock<REAL>> const &GetBlocks() const { return _blocks; }

@@ -243,9 +243,10 @@ private:
 
     // Indices of sums are constants, without which GCC would keep sums in memory.
     template <typename SIZE, std::size_t... SUM>
-    OPENSUBDIVHEX_INLINE static void
-    addProducts(ColumnLanes const (&weights)[kNumSums], ColumnLanes const (&numbers)[kNumPointLanes],
-                SIZE size, ColumnSums (&sums)[kNumSums], std::index_sequence<SUM...> /*all*/) {
+    OPENSUBDIVHEX_INLINE static void addProducts(ColumnLanes const (&weights)[kNumSums],
+                                                 ColumnLanes const (&numbers)[kNumPointLanes],
+                                                 SIZE size, ColumnSums (&sums)[kNumSums],
+                                                 std::index_sequence<SUM...> /*all*/) {
         (Columns::AddProducts(sums[SUM][0], weights[SUM], numbers[0]), ...);
         (Columns::AddProducts(sums[SUM][1], weights[SUM], numbers[1]), ...);
         (Columns::AddProducts(sums[SUM][2], weights[SUM], numbers[2]), ...);
