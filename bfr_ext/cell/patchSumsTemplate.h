@@ -115,20 +115,48 @@ OPENSUBDIVHEX_INLINE auto PointColumns<REAL>::SumUp(Numbers const &numbers) ->
 }
 #endif
 
-/// The cubic Bernstein polynomials at a coordinate, and their derivatives.
+/// \brief The cubic Bernstein polynomials at a place of a patch, and their derivatives.
+///
+/// Those along s and along t are made at once, and so are the two halves of each, which are mirror images.
 template <typename REAL>
-struct PatchCubics {
-    OPENSUBDIVHEX_INLINE explicit PatchCubics(double coordinate)
-        : PatchCubics(REAL(1 - coordinate), REAL(coordinate)) {}
-    OPENSUBDIVHEX_INLINE PatchCubics(REAL r, REAL s)
-        : toStart(r),
-          toEnd(s), ofOrder{{r * r * r, 3 * r * r * s, 3 * r * s * s, s * s * s},
-                            {-3 * r * r, 3 * r * (r - 2 * s), 3 * s * (2 * r - s), 3 * s * s},
-                            {6 * r, 6 * (s - 2 * r), 6 * (r - 2 * s), 6 * s}} {}
+class PatchCubics {
+public:
+    OPENSUBDIVHEX_INLINE PatchCubics(REAL s, REAL t) {
+        Four const x{s, t, 1 - t, 1 - s};
+        Four const y{x[3], x[2], x[1], x[0]};
+        constexpr Four kThree{3, 3, -3, -3};
+        _ends[0] = x * x * x;
+        _middles[0] = x * x * y * REAL(3);
+        _ends[1] = x * x * kThree;
+        _middles[1] = x * (y + y - x) * kThree;
+        _ends[2] = x * REAL(6);
+        _middles[2] = (y - x - x) * REAL(6);
+        // The share of the first of two points inside of a corner; where both distances are 0, half.
+        constexpr REAL kLeast = std::numeric_limits<REAL>::min();
+        Four const ofFirst = x + Four{kLeast, kLeast, kLeast, kLeast};
+        Four const ofBoth = ofFirst + Four{ofFirst[1], ofFirst[3], ofFirst[0], ofFirst[2]};
+        for (std::size_t i = 0; i < 4; ++i) {
+            _shares[i] = ofFirst[i] / ofBoth[i];
+        }
+    }
 
-    REAL toStart; ///< what the ends weigh
-    REAL toEnd;
-    REAL ofOrder[3][4];
+    /// Of the first point inside of each corner.
+    OPENSUBDIVHEX_INLINE REAL GetShare(int corner) const { return _shares[corner]; }
+    OPENSUBDIVHEX_INLINE REAL GetAlongS(int order, int i) const { return get(order, i, 0); }
+    OPENSUBDIVHEX_INLINE REAL GetAlongT(int order, int i) const { return get(order, i, 1); }
+
+private:
+    using Four = typename Registers<REAL, 4 * sizeof(REAL)>::Lanes;
+
+    OPENSUBDIVHEX_INLINE REAL get(int order, int i, int coordinate) const {
+        auto const &polynomials = i == 0 || i == 3 ? _ends : _middles;
+        return polynomials[order][std::size_t(i < 2 ? 3 - coordinate : coordinate)];
+    }
+
+    // By order of the derivative; lanes are for the end and the start of s and t: s, t, 1 - t, 1 - s.
+    Four _ends[3];    // by x three times
+    Four _middles[3]; // by x twice
+    REAL _shares[4];
 };
 
 /// \brief Some of the points of a block, number by number.
@@ -167,17 +195,7 @@ template <int NUM_DERIVATIVES, typename REAL>
 class PatchKernel {
 public:
     OPENSUBDIVHEX_INLINE explicit PatchKernel(PatchSums<REAL> const &all)
-        : _all(all), _s(all.place.s), _t(all.place.t) {
-        // The share of the first of two points inside of a corner; where both distances are 0, half.
-        auto const getShare = [](REAL ofFirst, REAL ofSecond) {
-            constexpr REAL kLeast = std::numeric_limits<REAL>::min();
-            return (ofFirst + kLeast) / (ofFirst + ofSecond + 2 * kLeast);
-        };
-        _shares[0] = getShare(_s.toEnd, _t.toEnd);
-        _shares[1] = getShare(_t.toEnd, _s.toStart);
-        _shares[2] = getShare(_t.toStart, _s.toEnd);
-        _shares[3] = getShare(_s.toStart, _t.toStart);
-    }
+        : _all(all), _cubics(REAL(all.place.s), REAL(all.place.t)) {}
 
     /// Writes \p size numbers of the results, no more than four, from the first one on.
     ///
@@ -209,9 +227,11 @@ public:
             typename Point::Lanes sum{};
             int next = 1;
             (Point::AddProducts(sum, bySt[next++], REAL(factors)), ...);
-            REAL numbers[kNumPointLanes];
-            Point::Store(sizeof...(factors) == 0 ? bySt[0] : sum, numbers);
-            std::copy_n(numbers, int(size), _all.results[result] + first);
+            sum = sizeof...(factors) == 0 ? bySt[0] : sum;
+            REAL *const numbers = _all.results[result] + first;
+            for (int k = 0; k < size; ++k) {
+                numbers[k] = sum[std::size_t(k)];
+            }
         };
         write(0);
         if constexpr (NUM_DERIVATIVES > 0) {
@@ -271,15 +291,15 @@ private:
                     int const corner = 2 * (k - 1) + i - 1;
                     Columns::AddProducts(
                         row, Columns::Load(rows + (PatchRow::kNumBicubic + corner) * kGroup),
-                        _shares[corner]);
+                        _cubics.GetShare(corner));
                 }
                 for (int order = 0; order <= NUM_DERIVATIVES; ++order) {
-                    add(i, row, _s.ofOrder[order][i], alongS[order]);
+                    add(i, row, _cubics.GetAlongS(order, i), alongS[order]);
                 }
             }
             for (int sum = 0; sum < kNumSums; ++sum) {
                 auto const [ofS, ofT] = kOrders[sum];
-                add(k, alongS[ofS], _t.ofOrder[ofT][k], weights[sum]);
+                add(k, alongS[ofS], _cubics.GetAlongT(ofT, k), weights[sum]);
             }
         }
     }
@@ -294,9 +314,7 @@ private:
     }
 
     PatchSums<REAL> const &_all;
-    PatchCubics<REAL> const _s;
-    PatchCubics<REAL> const _t;
-    REAL _shares[4]; // of the first point inside of each corner
+    PatchCubics<REAL> const _cubics;
 };
 
 template <int NUM_DERIVATIVES, typename REAL>
