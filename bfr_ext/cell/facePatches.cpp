@@ -11,6 +11,7 @@
 #include <cstdint>
 #include <limits>
 #include <numeric>
+#include <tuple>
 #include <type_traits>
 #include <utility>
 #include <vector>
@@ -326,14 +327,34 @@ struct Quadrilateral {
     double t;
     Pair byCoords[2]; // derivatives of s, and of t, by the coordinates
     Pair mixed;       // of the coordinates by s and t
+
+    // From changes of the coordinates to those of s and t.
+    double ToS(double first, double second) const {
+        return byCoords[0][0] * first + byCoords[0][1] * second;
+    }
+    double ToT(double first, double second) const {
+        return byCoords[1][0] * first + byCoords[1][1] * second;
+    }
 };
 
-OPENSUBDIVHEX_INLINE Quadrilateral findInTrapezoid(Pair const &coords) {
-    double const h = coords[1];
-    double const byLength = 1 / (1 - h);
-    double const s = (coords[0] - 0.5 * h) * byLength;
-    return {s, 2 * h, {{byLength, (s - 0.5) * byLength}, {0, 2}}, {-0.5, 0}};
-}
+// That of a half cell.
+struct Trapezoid {
+    OPENSUBDIVHEX_INLINE explicit Trapezoid(Pair const &coords)
+        : byLength(1 / (1 - coords[1])), s((coords[0] - 0.5 * coords[1]) * byLength),
+          t(2 * coords[1]) {}
+    double ToS(double first, double second) const {
+        return byLength * (first + (s - 0.5) * second);
+    }
+    double ToT(double /*first*/, double second) const { return 2 * second; }
+    operator Quadrilateral() const {
+        return {s, t, {{byLength, (s - 0.5) * byLength}, {0, 2}}, mixed};
+    }
+
+    double byLength;
+    double s;
+    double t;
+    static constexpr Pair mixed = {-0.5, 0};
+};
 
 // The kite between the middles of two edges, by which coordinates are, the centre, and a corner, which is
 // (1 + m) times the sum of the two middles.
@@ -546,7 +567,7 @@ Quadrilateral findInWhole(FaceShape shape, int sector, Pair const &coords, int &
         // The corners of a half from the centre of its long edge, the diagonal, on, around from the end of that edge.
         constexpr Pair kCorners[4] = {{0.5, 0}, {0.25, 0.5}, {-0.25, 0.5}, {-0.5, 0}};
         int const local = face.GetSideOfEdge(sector) - 1;
-        return findInTrapezoid(map(kCorners[local], kCorners[local + 1], {0.5, 0}));
+        return Trapezoid(map(kCorners[local], kCorners[local + 1], {0.5, 0}));
     }
     double const cosine = std::cos(FarExt::internal::kPi / size);
     double const corner = 0.5 / (cosine * cosine);
@@ -557,64 +578,52 @@ Quadrilateral findInWhole(FaceShape shape, int sector, Pair const &coords, int &
                       corner - 1);
 }
 
-// The derivatives of the coordinates that a map makes of those in a sector, by u and v: once, and by both.
+// The derivatives of a coordinate, which a map makes of those in a sector, by u and v: once, and by both.
 struct ByUv {
-    OPENSUBDIVHEX_INLINE ByUv(Linear const &linear, BfrPlace const &place, bool hasSubFaces) {
-        for (std::size_t i = 0; i < 2; ++i) {
-            // By the coordinates of the plane, which in triangles and quads are u and v.
-            Pair by;
-            for (std::size_t k = 0; k < 2; ++k) {
-                by[k] = linear[i][0] * place.point.toCoords[0][k] +
-                        linear[i][1] * place.point.toCoords[1][k];
-            }
-            first[i] = by;
-            if (hasSubFaces) {
-                auto const &[x, y] = place.toOwn;
-                first[i] = {by[0] * x[0] + by[1] * y[0], by[0] * x[1] + by[1] * y[1]};
-                mixed[i] = by[0] * place.mixed[0] + by[1] * place.mixed[1];
-            }
+    OPENSUBDIVHEX_INLINE ByUv(Pair const &row, BfrPlace const &place, bool hasSubFaces)
+        // By the coordinates of the plane, which in triangles and quads are u and v.
+        : u(row[0] * place.point.toCoords[0][0] + row[1] * place.point.toCoords[1][0]),
+          v(row[0] * place.point.toCoords[0][1] + row[1] * place.point.toCoords[1][1]) {
+        if (hasSubFaces) {
+            auto const &[x, y] = place.toOwn;
+            mixed = u * place.mixed[0] + v * place.mixed[1];
+            std::tie(u, v) = std::pair(u * x[0] + v * y[0], u * x[1] + v * y[1]);
         }
     }
 
-    Pair first[2];
-    Pair mixed = {0, 0};
+    double u;
+    double v;
+    double mixed = 0;
 };
 
 // Adds where the place is in its patch, whose cell has coordinates that are a linear map from those in the sector.
-template <bool HAS_SECOND>
-OPENSUBDIVHEX_INLINE void addPlace(Quadrilateral const &in, Linear const &linear,
+template <bool HAS_SECOND, class IN_CELL>
+OPENSUBDIVHEX_INLINE void addPlace(IN_CELL const &in, Linear const &linear,
                                    BfrPlace const &ofFace, bool hasSubFaces, PatchPlace &place) {
     // Gregory patches have poles beyond their corners.
     place.s = std::min(std::max(in.s, 0.0), 1.0);
     place.t = std::min(std::max(in.t, 0.0), 1.0);
-    ByUv const cell(linear, ofFace, hasSubFaces);
-    auto const toSt = [&](double first, double second) {
-        return Pair{in.byCoords[0][0] * first + in.byCoords[0][1] * second,
-                    in.byCoords[1][0] * first + in.byCoords[1][1] * second};
-    };
-    for (std::size_t k = 0; k < 2; ++k) {
-        Pair const byUv = toSt(cell.first[0][k], cell.first[1][k]);
-        place.first[0][k] = byUv[0];
-        place.first[1][k] = byUv[1];
-    }
+    ByUv const x(linear[0], ofFace, hasSubFaces);
+    ByUv const y(linear[1], ofFace, hasSubFaces);
+    place.first[0] = {in.ToS(x.u, y.u), in.ToS(x.v, y.v)};
+    place.first[1] = {in.ToT(x.u, y.u), in.ToT(x.v, y.v)};
     if constexpr (HAS_SECOND) {
-        Pair const bend = toSt(in.mixed[0], in.mixed[1]);
+        Pair const bend = {in.ToS(in.mixed[0], in.mixed[1]), in.ToT(in.mixed[0], in.mixed[1])};
         auto const &[s, t] = place.first;
         double const products[3] = {2 * s[0] * t[0], s[0] * t[1] + s[1] * t[0], 2 * s[1] * t[1]};
         for (std::size_t i = 0; i < 3; ++i) {
             place.second[i] = {-bend[0] * products[i], -bend[1] * products[i]};
         }
-        Pair const mixed = toSt(cell.mixed[0], cell.mixed[1]);
-        place.second[1] = {place.second[1][0] + mixed[0], place.second[1][1] + mixed[1]};
+        place.second[1] = {place.second[1][0] + in.ToS(x.mixed, y.mixed),
+                           place.second[1][1] + in.ToT(x.mixed, y.mixed)};
     }
 }
 
-// In the whole cell of a level.
+// The place in a whole or half cell of a level, but for its patch in a half cell.
 template <bool HAS_SECOND>
-PatchPlace findInMiddle(BfrPlace const &ofFace, FaceShape shape, int level) {
+void findInMiddle(BfrPlace const &ofFace, FaceShape shape, int level, PatchPlace &place) {
     double const scale = 1 << level;
     auto const [a, b] = ofFace.point.coords;
-    PatchPlace place;
     place.patch = 0;
     Linear linear;
     Quadrilateral const in =
@@ -623,35 +632,40 @@ PatchPlace findInMiddle(BfrPlace const &ofFace, FaceShape shape, int level) {
         row = {scale * row[0], scale * row[1]};
     }
     addPlace<HAS_SECOND>(in, linear, ofFace, shape.size > 4, place);
-    return place;
 }
-
-// The number of the patch that is a half cell.
-OPENSUBDIVHEX_INLINE int findPatch(SectorCell const &cell, int sector, FaceShape shape) {
-    return MakeFaceCells(shape).GetNumPatches() + shape.GetNumSectors() * cell.numBeforeStep +
-           (sector - shape.GetFirstSector()) * cell.numInStep + cell.numBefore;
-}
-
-// In that cell; null: in the whole cell.
 template <bool HAS_SECOND>
-OPENSUBDIVHEX_INLINE PatchPlace findPatchPlace(BfrPlace const &ofFace, FaceShape shape, int level,
-                                               SectorCell const *cell) {
+OPENSUBDIVHEX_INLINE void findInHalfCell(BfrPlace const &ofFace, FaceShape shape,
+                                         CellMap const &map, PatchPlace &place) {
+    addPlace<HAS_SECOND>(Trapezoid(map.Apply(ofFace.point.coords)), {map.rows[0], map.rows[1]},
+                         ofFace, shape.size > 4, place);
+}
+
+// Finds the place in its patch.  Calls function() as soon as the number of the patch is known, if it is a half cell.
+template <typename FUNCTION>
+OPENSUBDIVHEX_INLINE void findPatchPlace(BfrPlace const &ofFace, FaceShape shape, int level,
+                                         int numDerivatives, PatchPlace &place,
+                                         FUNCTION const &function) {
+    SectorCell const *const cell = SectorCells::Get(level).Find(ofFace.point.coords);
     if (!cell) {
-        return findInMiddle<HAS_SECOND>(ofFace, shape, level);
+        numDerivatives > 1 ? findInMiddle<true>(ofFace, shape, level, place)
+                           : findInMiddle<false>(ofFace, shape, level, place);
+        return;
     }
-    PatchPlace place;
-    place.patch = findPatch(*cell, ofFace.point.sector, shape);
-    addPlace<HAS_SECOND>(findInTrapezoid(cell->map.Apply(ofFace.point.coords)),
-                         {cell->map.rows[0], cell->map.rows[1]}, ofFace, shape.size > 4, place);
-    return place;
+    place.patch = MakeFaceCells(shape).GetNumPatches() +
+                  shape.GetNumSectors() * cell->numBeforeStep +
+                  (ofFace.point.sector - shape.GetFirstSector()) * cell->numInStep +
+                  cell->numBefore;
+    function();
+    numDerivatives > 1 ? findInHalfCell<true>(ofFace, shape, cell->map, place)
+                       : findInHalfCell<false>(ofFace, shape, cell->map, place);
 }
 
 } // namespace
 
 PatchPlace FindPatchPlace(BfrPlace const &ofFace, FaceShape shape, int level, int numDerivatives) {
-    SectorCell const *const cell = SectorCells::Get(level).Find(ofFace.point.coords);
-    return numDerivatives > 1 ? findPatchPlace<true>(ofFace, shape, level, cell)
-                              : findPatchPlace<false>(ofFace, shape, level, cell);
+    PatchPlace place;
+    findPatchPlace(ofFace, shape, level, numDerivatives, place, [] {});
+    return place;
 }
 
 namespace {
@@ -768,17 +782,18 @@ void FacePatches<REAL>::MakePoints(BaseType const &type, int level, REAL const *
     }
 }
 
-// Returns the part that has a patch, and which of the part's patches it is.
 template <typename REAL>
-auto FacePatches<REAL>::findPart(int level, int &patch) const -> Part const & {
+auto FacePatches<REAL>::findBlock(int level, int patch) const
+    -> std::pair<Part const *, PatchBlock<REAL> const *> {
     if (patch < _numInFirst) {
-        return _parts[0];
+        return {&_parts[0], _parts[0].blocks + patch};
     }
     int const levels = 2 * (level - 1);
     int const behindFirst = patch - _numInFirst;
-    patch = behindFirst & ((1 << levels) - 1);
     std::size_t const number = 1 + std::size_t(behindFirst >> levels);
-    return number < _parts.size() ? _parts[number] : _otherParts[number - _parts.size()];
+    Part const &part =
+        number < _parts.size() ? _parts[number] : _otherParts[number - _parts.size()];
+    return {&part, part.blocks + (behindFirst & ((1 << levels) - 1))};
 }
 
 template <typename REAL>
@@ -788,18 +803,15 @@ void FacePatches<REAL>::Evaluate(Bfr::Parameterization const &parameterization, 
     prefetch(&_numInFirst,
              (sizeof(_numInFirst) + sizeof(_numParts) + sizeof(_parts)) / sizeof(int));
     BfrPlace const ofFace = FindBfrPlace(parameterization, shape, uv, 0);
-    SectorCell const *const cell = SectorCells::Get(level).Find(ofFace.point.coords);
-    if (cell) {
-        int patch = findPatch(*cell, ofFace.point.sector, shape);
-        Part const &part = findPart(level, patch);
-        prefetch(part.blocks + patch, 1);
-        prefetch(points + part.firstPoint * stride, part.numPoints * stride);
-    }
-    PatchPlace place = numDerivatives > 1 ? findPatchPlace<true>(ofFace, shape, level, cell)
-                                          : findPatchPlace<false>(ofFace, shape, level, cell);
-    Part const &part = findPart(level, place.patch);
-    SumUpPatch({place, numDerivatives, part.blocks[place.patch], points + part.firstPoint * stride,
-                size, stride, results});
+    PatchPlace place;
+    findPatchPlace(ofFace, shape, level, numDerivatives, place, [&] {
+        auto const [part, block] = findBlock(level, place.patch);
+        prefetch(block, 1);
+        prefetch(points + part->firstPoint * stride, part->numPoints * stride);
+    });
+    auto const [part, block] = findBlock(level, place.patch);
+    SumUpPatch({place, numDerivatives, *block, points + part->firstPoint * stride, size, stride,
+                results});
 }
 
 template class PatchRows<float>;
