@@ -265,10 +265,12 @@ public:
                 continue;
             }
             grow(_ofChild, _indices.size());
-            for (std::size_t column = 0; column < _indices.size(); ++column) {
-                StepMatrix::CopyPadded(
-                    ofRings + std::size_t(_indices[column]) * _paddedSize, _paddedSize,
-                    &_ofChild[std::size_t(child.GetColumns()[column]) * _paddedSize]);
+            REAL *const ofChild = _ofChild.data();
+            std::size_t const paddedSize = _paddedSize;
+            int const *column = child.GetColumns().data();
+            for (int const index : _indices) {
+                StepMatrix::CopyPadded(ofRings + std::size_t(index) * paddedSize, paddedSize,
+                                       ofChild + std::size_t(*column++) * paddedSize);
             }
             writeRefined(child.GetType(), sources);
         }
