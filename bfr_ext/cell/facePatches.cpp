@@ -96,19 +96,18 @@ std::vector<std::vector<double>> findRows(CellType const &type, int steps, Corne
     return rows;
 }
 
-// Returns the columns that the points of a patch have.  Those left out weigh no more than rounding, all together; what they
-// weigh is added to the column that weighs most, so that sums of weights stay.
+// Returns the columns of a patch's points that count.  Others together weigh no more than rounding; they are added to the
+// column that weighs most, so that weights have the same sums.
 template <typename REAL>
 std::vector<int> takeColumns(std::vector<double> *rows) {
     constexpr double kRounding = 32 * std::numeric_limits<REAL>::epsilon();
+    constexpr double kInfinity = std::numeric_limits<double>::infinity();
     std::vector<double> weights(rows->size(), 0);
-    for (std::size_t column = 0; column < weights.size(); ++column) {
-        for (int row = 0; row < kNumPatchPoints; ++row) {
+    for (int row = 0; row < kNumPatchPoints; ++row) {
+        for (std::size_t column = 0; column < weights.size(); ++column) {
             double const weight = std::abs(rows[row][column]);
-            // One that is no number weighs most.
-            weights[column] = weight <= weights[column] ? weights[column]
-                              : std::isnan(weight)      ? std::numeric_limits<double>::infinity()
-                                                        : weight;
+            // Weights that are not numbers are the largest.
+            weights[column] = std::isnan(weight) ? kInfinity : std::max(weights[column], weight);
         }
     }
     std::vector<int> columns(weights.size());
@@ -117,13 +116,12 @@ std::vector<int> takeColumns(std::vector<double> *rows) {
         return weights[std::size_t(a)] > weights[std::size_t(b)];
     });
     auto const first = std::size_t(columns[0]);
-    for (double left = kRounding - weights[std::size_t(columns.back())]; left >= 0;
-         left -= weights[std::size_t(columns.back())]) {
-        auto const last = std::size_t(columns.back());
-        columns.pop_back();
+    double left = kRounding;
+    while ((left -= weights[std::size_t(columns.back())]) >= 0) {
         for (int row = 0; row < kNumPatchPoints; ++row) {
-            rows[row][first] += rows[row][last];
+            rows[row][first] += rows[row][std::size_t(columns.back())];
         }
+        columns.pop_back();
     }
     std::sort(columns.begin(), columns.end());
     return columns;
@@ -329,34 +327,14 @@ struct Quadrilateral {
     double t;
     Pair byCoords[2]; // derivatives of s, and of t, by the coordinates
     Pair mixed;       // of the coordinates by s and t
-
-    // From changes of the coordinates to those of s and t.
-    double ToS(double first, double second) const {
-        return byCoords[0][0] * first + byCoords[0][1] * second;
-    }
-    double ToT(double first, double second) const {
-        return byCoords[1][0] * first + byCoords[1][1] * second;
-    }
 };
 
-// That of a half cell.
-struct Trapezoid {
-    OPENSUBDIVHEX_INLINE explicit Trapezoid(Pair const &coords)
-        : byLength(1 / (1 - coords[1])), s((coords[0] - 0.5 * coords[1]) * byLength),
-          t(2 * coords[1]) {}
-    double ToS(double first, double second) const {
-        return byLength * (first + (s - 0.5) * second);
-    }
-    double ToT(double /*first*/, double second) const { return 2 * second; }
-    operator Quadrilateral() const {
-        return {s, t, {{byLength, (s - 0.5) * byLength}, {0, 2}}, mixed};
-    }
-
-    double byLength;
-    double s;
-    double t;
-    static constexpr Pair mixed = {-0.5, 0};
-};
+OPENSUBDIVHEX_INLINE Quadrilateral findInTrapezoid(Pair const &coords) {
+    double const h = coords[1];
+    double const byLength = 1 / (1 - h);
+    double const s = (coords[0] - 0.5 * h) * byLength;
+    return {s, 2 * h, {{byLength, (s - 0.5) * byLength}, {0, 2}}, {-0.5, 0}};
+}
 
 // The kite between the middles of two edges, by which coordinates are, the centre, and a corner, which is
 // (1 + m) times the sum of the two middles.
@@ -569,7 +547,7 @@ Quadrilateral findInWhole(FaceShape shape, int sector, Pair const &coords, int &
         // The corners of a half from the centre of its long edge, the diagonal, on, around from the end of that edge.
         constexpr Pair kCorners[4] = {{0.5, 0}, {0.25, 0.5}, {-0.25, 0.5}, {-0.5, 0}};
         int const local = face.GetSideOfEdge(sector) - 1;
-        return Trapezoid(map(kCorners[local], kCorners[local + 1], {0.5, 0}));
+        return findInTrapezoid(map(kCorners[local], kCorners[local + 1], {0.5, 0}));
     }
     double const cosine = std::cos(FarExt::internal::kPi / size);
     double const corner = 0.5 / (cosine * cosine);
@@ -599,25 +577,31 @@ struct ByUv {
 };
 
 // Adds where the place is in its patch, whose cell has coordinates that are a linear map from those in the sector.
-template <bool HAS_SECOND, class IN_CELL>
-OPENSUBDIVHEX_INLINE void addPlace(IN_CELL const &in, Linear const &linear,
+template <bool HAS_SECOND>
+OPENSUBDIVHEX_INLINE void addPlace(Quadrilateral const &in, Linear const &linear,
                                    BfrPlace const &ofFace, bool hasSubFaces, PatchPlace &place) {
     // Gregory patches have poles beyond their corners.
     place.s = std::min(std::max(in.s, 0.0), 1.0);
     place.t = std::min(std::max(in.t, 0.0), 1.0);
     ByUv const x(linear[0], ofFace, hasSubFaces);
     ByUv const y(linear[1], ofFace, hasSubFaces);
-    place.first[0] = {in.ToS(x.u, y.u), in.ToS(x.v, y.v)};
-    place.first[1] = {in.ToT(x.u, y.u), in.ToT(x.v, y.v)};
+    auto const toSt = [&](double first, double second) {
+        return Pair{in.byCoords[0][0] * first + in.byCoords[0][1] * second,
+                    in.byCoords[1][0] * first + in.byCoords[1][1] * second};
+    };
+    Pair const byU = toSt(x.u, y.u);
+    Pair const byV = toSt(x.v, y.v);
+    place.first[0] = {byU[0], byV[0]};
+    place.first[1] = {byU[1], byV[1]};
     if constexpr (HAS_SECOND) {
-        Pair const bend = {in.ToS(in.mixed[0], in.mixed[1]), in.ToT(in.mixed[0], in.mixed[1])};
+        Pair const bend = toSt(in.mixed[0], in.mixed[1]);
         auto const &[s, t] = place.first;
         double const products[3] = {2 * s[0] * t[0], s[0] * t[1] + s[1] * t[0], 2 * s[1] * t[1]};
         for (std::size_t i = 0; i < 3; ++i) {
             place.second[i] = {-bend[0] * products[i], -bend[1] * products[i]};
         }
-        place.second[1] = {place.second[1][0] + in.ToS(x.mixed, y.mixed),
-                           place.second[1][1] + in.ToT(x.mixed, y.mixed)};
+        Pair const mixed = toSt(x.mixed, y.mixed);
+        place.second[1] = {place.second[1][0] + mixed[0], place.second[1][1] + mixed[1]};
     }
 }
 
@@ -638,8 +622,8 @@ void findInMiddle(BfrPlace const &ofFace, FaceShape shape, int level, PatchPlace
 template <bool HAS_SECOND>
 OPENSUBDIVHEX_INLINE void findInHalfCell(BfrPlace const &ofFace, FaceShape shape,
                                          CellMap const &map, PatchPlace &place) {
-    addPlace<HAS_SECOND>(Trapezoid(map.Apply(ofFace.point.coords)), {map.rows[0], map.rows[1]},
-                         ofFace, shape.size > 4, place);
+    addPlace<HAS_SECOND>(findInTrapezoid(map.Apply(ofFace.point.coords)),
+                         {map.rows[0], map.rows[1]}, ofFace, shape.size > 4, place);
 }
 
 // Finds the place in its patch.  Calls function() as soon as the number of the patch is known, if it is a half cell.
@@ -653,10 +637,9 @@ OPENSUBDIVHEX_INLINE void findPatchPlace(BfrPlace const &ofFace, FaceShape shape
                            : findInMiddle<false>(ofFace, shape, level, place);
         return;
     }
-    place.patch = MakeFaceCells(shape).GetNumPatches() +
-                  shape.GetNumSectors() * cell->numBeforeStep +
-                  (ofFace.point.sector - shape.GetFirstSector()) * cell->numInStep +
-                  cell->numBefore;
+    place.patch =
+        MakeFaceCells(shape).GetNumPatches() + shape.GetNumSectors() * cell->numBeforeStep +
+        (ofFace.point.sector - shape.GetFirstSector()) * cell->numInStep + cell->numBefore;
     function();
     numDerivatives > 1 ? findInHalfCell<true>(ofFace, shape, cell->map, place)
                        : findInHalfCell<false>(ofFace, shape, cell->map, place);
@@ -812,8 +795,8 @@ void FacePatches<REAL>::Evaluate(Bfr::Parameterization const &parameterization, 
         prefetch(points + part->firstPoint * stride, part->numPoints * stride);
     });
     auto const [part, block] = findBlock(level, place.patch);
-    SumUpPatch({place, numDerivatives, *block, points + part->firstPoint * stride, size, stride,
-                results});
+    SumUpPatch(
+        {place, numDerivatives, *block, points + part->firstPoint * stride, size, stride, results});
 }
 
 template class PatchRows<float>;
