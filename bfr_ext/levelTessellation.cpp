@@ -93,8 +93,8 @@ template int LevelTessellation::writeCoords(int, int, double[]) const;
 template <typename REAL>
 int LevelTessellation::GetPlaneCoords(REAL coordTuples[]) const {
     FarExt::internal::BasePolygon const polygon(_data->GetFaceShape());
-    for (TessellationData::SectorCoords const &place : _data->places) {
-        polygon.Write(place.sector, {place.start, place.end}, coordTuples);
+    for (auto const &[sector, inSector] : _data->places) {
+        polygon.Write(sector, {inSector[0], inSector[1]}, coordTuples);
         coordTuples += _data->coordStride;
     }
     return GetNumCoords();

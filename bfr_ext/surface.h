@@ -230,9 +230,7 @@ public:
     /// face-varying values on the two sides of a seam; last bits on edges and at vertices of the faces around a
     /// non-manifold vertex with a closed fan among others.
     ///
-    /// The weights are found when a type of faces or of cells is first evaluated so, and kept in the
-    /// cache.  Inside of trees of more than 128 cells the control points are refined cell by cell instead,
-    /// in double precision.
+    /// The weights are found when a type of faces or of cells is first evaluated so, and kept in the cache.
     void Evaluate(LevelTessellation const &tessellation, REAL const controlPoints[],
                   PointDescriptor const &pointDesc, REAL p[],
                   PointDescriptor const &resultDesc) const;

@@ -4,7 +4,6 @@
 #include "cellStencil.h"
 #include "patchEvaluator.h"
 #include "rateEvaluator.h"
-#include "refinedCells.h"
 
 #include <algorithm>
 
@@ -13,11 +12,7 @@ namespace OpenSubdivHex::BfrExt::internal {
 template <typename REAL>
 void FaceEvaluator<REAL>::Evaluate(TessellationData const &tessellation, REAL *const results[6],
                                    PointDescriptor const &resultDesc) {
-    if (tessellation.HasCellPlans()) {
-        evaluateLeaves(tessellation, results, resultDesc);
-    } else {
-        evaluateTree(tessellation, results, resultDesc);
-    }
+    evaluateLeaves(tessellation, results, resultDesc);
     if (results[3]) {
         evaluateSecond(tessellation, results, resultDesc);
     }
@@ -44,9 +39,8 @@ void FaceEvaluator<REAL>::evaluateSecond(TessellationData const &tessellation, R
                                          PointDescriptor const &resultDesc) {
     CellStencil stencil(*_face.type);
     std::ptrdiff_t result = 0;
-    for (TessellationData::SectorCoords const &place : tessellation.places) {
-        BasePoint const point =
-            MakeBasePoint(_face.type.GetShape(_face.size), place.sector, {place.start, place.end});
+    for (auto const &[sector, coords] : tessellation.places) {
+        BasePoint const point = MakeBasePoint(_face.type.GetShape(_face.size), sector, coords);
         stencil.Find(point, false);
         stencil.FindSecond(point);
         sumUp(stencil.GetDuuWeights(), results[3] + result);
@@ -118,90 +112,6 @@ void FaceEvaluator<REAL>::evaluateLeaves(TessellationData const &tessellation, R
     });
 }
 
-// The control points are refined along the tree, as far as cells have corners that are asked for.
-template <typename REAL>
-void FaceEvaluator<REAL>::evaluateTree(TessellationData const &tessellation, REAL *const *results,
-                                       PointDescriptor const &resultDesc) {
-    auto const length = std::size_t(_size);
-    std::vector<double> control;
-    REAL const *const points = _points.Get();
-    for (int i = 0; i < _face.numPoints; ++i) {
-        REAL const *const p = points + std::ptrdiff_t(i) * _points.GetStride();
-        control.insert(control.end(), p, p + _size);
-    }
-    CellTree const &tree = tessellation.tree->cells;
-    std::vector<double> point(2 * length);
-    std::vector<bool> isDone(tessellation.places.size());
-    auto const write = [&](int place, int kind, double const *from) {
-        std::copy(from, from + length, results[kind] + std::ptrdiff_t(place) * resultDesc.stride);
-    };
-    // Their memory is kept for the next face.
-    static thread_local RefinedCells cells;
-    using Corners = std::vector<TessellationData::CellCorner>;
-    auto const forEachCornerOf = [](int treeCell, Corners const &ofAll, auto const &function) {
-        auto corner = std::lower_bound(
-            ofAll.begin(), ofAll.end(), treeCell,
-            [](TessellationData::CellCorner const &a, int number) { return a.cell < number; });
-        for (; corner != ofAll.end() && corner->cell == treeCell; ++corner) {
-            function(*corner);
-        }
-    };
-    Corners const withDerivatives =
-        results[1] ? tessellation.FindCornersOfDerivatives() : Corners();
-    auto const evaluateCorners = [&](int treeCell, std::size_t cell) {
-        if (treeCell > 0) { // points on the border are made below
-            forEachCornerOf(treeCell, tessellation.tree->corners, [&](auto const &corner) {
-                cells.EvaluateCorner(cell, corner.corner, point.data());
-                write(corner.place, 0, point.data());
-            });
-        }
-        forEachCornerOf(treeCell, withDerivatives, [&](auto const &corner) {
-            cells[cell].EvaluateCorner(corner.corner, point.data(), point.data() + length);
-            write(corner.place, 1, point.data());
-            write(corner.place, 2, point.data() + length);
-            isDone[std::size_t(corner.place)] = true;
-        });
-    };
-    auto const visit = [&](auto const &self, int treeCell, std::size_t cell) -> void {
-        evaluateCorners(treeCell, cell);
-        if (!tree.IsRefined(treeCell)) {
-            return;
-        }
-        int const firstInTree = tree.GetFirstChild(treeCell);
-        std::size_t const first = cells.GetFirstChild(cell);
-        std::size_t const numCells = cells.GetSize();
-        for (int i = 0; i < tree.GetNumChildren(treeCell); ++i) {
-            // Only the first child has corners that the cell has not.
-            if (i == 0 || tree.IsRefined(firstInTree + i)) {
-                self(self, firstInTree + i, first + std::size_t(i));
-                cells.Drop(numCells);
-            }
-        }
-    };
-    if (PlainFaceType const *const plain = _face.type.GetPlain()) {
-        cells.SetBase(*plain, control.data(), _size);
-    } else {
-        cells.SetBase(*_face.type, control.data(), _size);
-    }
-    visit(visit, 0, RefinedCells::kBase);
-    // Derivatives where the tree has not the cell that they are from.
-    for (std::size_t i = 0; results[1] && i < isDone.size(); ++i) {
-        if (!isDone[i]) {
-            TessellationData::SectorCoords const &place = tessellation.places[i];
-            CellStencil stencil(*_face.type);
-            stencil.Find(MakeBasePoint(_face.type.GetShape(_face.size), place.sector,
-                                       {place.start, place.end}),
-                         true);
-            std::ptrdiff_t const result = std::ptrdiff_t(i) * resultDesc.stride;
-            sumUp(stencil.GetDuWeights(), results[1] + result);
-            sumUp(stencil.GetDvWeights(), results[2] + result);
-        }
-    }
-    useBorder([&](BorderEvaluator<REAL> &border) {
-        evaluateBorder(tessellation, border, results[0], resultDesc);
-    });
-}
-
 // Makes the points on the border.
 template <typename REAL>
 void FaceEvaluator<REAL>::evaluateBorder(TessellationData const &tessellation,
@@ -215,7 +125,7 @@ void FaceEvaluator<REAL>::evaluateBorder(TessellationData const &tessellation,
     for (std::size_t edge = 0; edge < std::size_t(_face.size); ++edge) {
         int const first = tessellation.firstEdgeCoords[edge];
         int const numPlaces = tessellation.firstEdgeCoords[edge + 1] - first - 1;
-        int const level = tessellation.GetEdgeLevel(edge);
+        int const level = tessellation.placeLevels.ofEdges[edge];
         if (level < 0) {
             for (int place = first + 1; place <= first + numPlaces; ++place) {
                 evaluator.EvaluateKeptPoint(edge, tessellation.GetWeightsOnEdge(edge, place),
@@ -246,7 +156,7 @@ void FaceEvaluator<REAL>::evaluateSectionBorder(TessellationData const &tessella
                 evaluator.EvaluateVertex(edge, result);
                 continue;
             }
-            int const level = tessellation.GetEdgeLevel(edge);
+            int const level = tessellation.placeLevels.ofEdges[edge];
             if (level < 0) {
                 evaluator.EvaluateKeptPoint(edge, tessellation.GetWeightsOnEdge(edge, place),
                                             result);

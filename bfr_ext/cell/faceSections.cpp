@@ -7,21 +7,46 @@
 
 namespace OpenSubdivHex::BfrExt::internal {
 
-FaceSections::FaceSections(FaceLevels const &faceLevels, int maxLeaves)
-    : _levels(faceLevels.levels), _tree(nullptr), _cells(faceLevels.shape) {
-    FaceShape const shape = faceLevels.shape;
-    for (int edge = 0; edge < shape.size; ++edge) {
-        int const level = GetEdgeLevel(shape, edge, _levels[std::size_t(edge)]);
-        _polylines.emplace(level, Polyline(level));
+PlaceLevels::PlaceLevels(FaceLevels const &levels)
+    : ofEdges(levels.levels.begin(), levels.levels.end() - 1), ofInside(levels.levels.back()),
+      ofAll(*std::max_element(levels.levels.begin(), levels.levels.end())) {
+    for (int edge = 0; edge < levels.shape.GetFirstSector(); ++edge) {
+        ++ofEdges[std::size_t(edge)]; // divided once more
     }
+}
+
+PlaceLevels::PlaceLevels(CellTree const &tree, std::vector<Polyline> const &edges)
+    : ofInside(tree.GetMaxLevel()), ofAll(ofInside) {
+    constexpr int kLastOfLongEdge = Polyline::kLastLevel + 1;
+    for (Polyline const &edge : edges) {
+        // Levels 0 and 1 give an edge the same.
+        int level = 0;
+        while (level <= kLastOfLongEdge && Polyline(level).GetNumPoints() < edge.GetNumPoints()) {
+            ++level;
+        }
+        ofEdges.push_back(level <= kLastOfLongEdge && Polyline(level) == edge ? level : -1);
+        // Places of a level are multiples of that of its first one.
+        for (int const place : edge.GetPlaces()) {
+            while (place % (Polyline::kLength >> ofAll) != 0) {
+                ++ofAll;
+            }
+        }
+    }
+}
+
+FaceSections::FaceSections(FaceLevels const &faceLevels, int maxLeaves)
+    : _levels(faceLevels.levels), _tree(nullptr), _placeLevels(faceLevels),
+      _edges(_placeLevels.ofEdges.begin(), _placeLevels.ofEdges.end()), _cells(faceLevels.shape) {
     cut(maxLeaves, [&](int cell, int) {
         int const numSteps = _levels.back() - _cells.GetLevel(cell);
-        return _cells.IsWhole(cell) ? CountLeaves(shape, numSteps) : std::ldexp(1.0, 2 * numSteps);
+        return _cells.IsWhole(cell) ? CountLeaves(GetFaceShape(), numSteps)
+                                    : std::ldexp(1.0, 2 * numSteps);
     });
 }
 
 FaceSections::FaceSections(CellTree const &tree, std::vector<Polyline> edges, int maxLeaves)
-    : _tree(&tree), _edges(std::move(edges)), _cells(tree.GetFaceShape()) {
+    : _tree(&tree), _placeLevels(tree, edges), _edges(std::move(edges)),
+      _cells(tree.GetFaceShape()) {
     // No further than it has to be known.
     auto const count = [&](auto const &self, int cell, int most) -> int {
         int const first = tree.GetFirstChild(cell);
