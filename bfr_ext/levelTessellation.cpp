@@ -48,9 +48,9 @@ Parameterization LevelTessellation::GetParameterization() const { return _data->
 int LevelTessellation::GetFaceSize() const { return _data->GetFaceSize(); }
 FarExt::FaceShape LevelTessellation::GetFaceShape() const { return _data->GetFaceShape(); }
 
-int LevelTessellation::GetNumSections() const { return _data->section ? _data->section->count : 1; }
+int LevelTessellation::GetNumSections() const { return _data->numSections; }
 
-int LevelTessellation::GetSection() const { return _data->section ? _data->section->number : 0; }
+int LevelTessellation::GetSection() const { return _data->section; }
 
 int LevelTessellation::GetNumEdges() const {
     return std::max(int(_data->firstEdgeCoords.size()) - 1, 0);

@@ -93,6 +93,7 @@ private:
 ///    kinks.
 ///  - In all these cases the result is the change of first derivatives over a cell of level 10.
 ///
+/// A surface is invalid until SurfaceFactory initializes it, and after it was moved from; copies share what the cache has.
 /// Several threads may call const functions at once.  A surface may outlive the factory and the cache.  An invalid surface
 /// writes nothing.  Other arguments are not checked; std::bad_alloc passes through.
 template <typename REAL>
@@ -113,18 +114,6 @@ public:
         int size = 0;   ///< numbers of a point
         int stride = 0; ///< from the begin of a point to that of the next
     };
-
-    /// An invalid surface, for SurfaceFactory to initialize.
-    Surface();
-    ~Surface();
-    /// Copies share what the cache has.
-    Surface(Surface const &other);
-    /// \copydoc Surface(Surface const &)
-    Surface &operator=(Surface const &other);
-    /// Makes the other one invalid.
-    Surface(Surface &&other) noexcept;
-    /// \copydoc Surface(Surface &&)
-    Surface &operator=(Surface &&other) noexcept;
 
     /// Whether SurfaceFactory initialized it.
     bool IsValid() const { return _owner != nullptr; }

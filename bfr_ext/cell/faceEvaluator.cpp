@@ -24,14 +24,12 @@ void FaceEvaluator<REAL>::Evaluate(TessellationData const &tessellation, REAL *c
 template <typename REAL>
 void FaceEvaluator<REAL>::Evaluate(OpenSubdiv::Bfr::Tessellation const &tessellation,
                                    REAL *const results[3], PointDescriptor const &resultDesc) {
-    useBorder([&](BorderEvaluator<REAL> &border) {
-        RateEvaluator<REAL> evaluator(tessellation, border, results, resultDesc.stride);
-        if (PlainFaceType const *const plain = _face.type.GetPlain()) {
-            evaluator.Evaluate(*plain);
-        } else {
-            evaluator.Evaluate(*_face.type, _points.Get(), _points.GetStride());
-        }
-    });
+    RateEvaluator<REAL> evaluator(tessellation, setBorder(), results, resultDesc.stride);
+    if (PlainFaceType const *const plain = _face.type.GetPlain()) {
+        evaluator.Evaluate(*plain);
+    } else {
+        evaluator.Evaluate(*_face.type, _points.Get(), _points.GetStride());
+    }
 }
 
 template <typename REAL>
@@ -70,105 +68,73 @@ void FaceEvaluator<REAL>::turnDerivatives(TessellationData const &tessellation,
     }
 }
 
-// Calls function(evaluator) for the border of the face.
+// The evaluator of the border of the face.
 template <typename REAL>
-template <typename FUNCTION>
-void FaceEvaluator<REAL>::useBorder(FUNCTION const &function) {
+BorderEvaluator<REAL> &FaceEvaluator<REAL>::setBorder() {
     // Its memory is kept for the next face, as below.
     static thread_local BorderEvaluator<REAL> border;
     border.SetFace(_points);
-    function(border);
+    return border;
 }
 
 template <typename REAL>
 void FaceEvaluator<REAL>::evaluateLeaves(TessellationData const &tessellation, REAL *const *results,
                                          PointDescriptor const &resultDesc) {
-    // Its memory is kept for the next face.
     static thread_local PatchEvaluator<REAL> evaluator;
+    BorderEvaluator<REAL> &border = setBorder();
     PlainFaceType const *const plain = _face.type.GetPlain();
-    bool const isInLattice = _face.type.IsInLattice();
-    CellPlan const &plan = tessellation.GetCellPlan(isInLattice);
-    CellPlan const *const ofDerivatives =
-        results[1] ? &tessellation.GetCellPlan(isInLattice, true) : nullptr;
-    if (!plain) {
-        REAL const *const points = _points.Get();
-        evaluator.Evaluate(*_face.type, plan, _size, points, _points.GetStride(), results,
-                           resultDesc.stride);
-        if (ofDerivatives) {
-            evaluator.Evaluate(*_face.type, *ofDerivatives, _size, points, _points.GetStride(),
-                               results + 1, resultDesc.stride);
-        }
-    }
-    useBorder([&](BorderEvaluator<REAL> &border) {
-        // Where there are no places, no ring is needed.
-        if (plain && !plan.IsEmpty()) {
-            evaluator.Evaluate(*plain, border.GetRingValues(), plan, results, resultDesc.stride);
-        }
-        if (plain && ofDerivatives && !ofDerivatives->IsEmpty()) {
-            evaluator.Evaluate(*plain, border.GetRingValues(), *ofDerivatives, results + 1,
+    auto const evaluate = [&](bool areDerivatives) {
+        CellPlan const &plan = tessellation.GetCellPlan(_face.type.IsInLattice(), areDerivatives);
+        REAL *const *const ofPlan = results + (areDerivatives ? 1 : 0);
+        if (!plain) {
+            evaluator.Evaluate(*_face.type, plan, _size, _points.Get(), _points.GetStride(), ofPlan,
                                resultDesc.stride);
+        } else if (!plan.IsEmpty()) { // else no ring is needed
+            evaluator.Evaluate(*plain, border.GetRingValues(), plan, ofPlan, resultDesc.stride);
         }
-        evaluateBorder(tessellation, border, results[0], resultDesc);
-    });
+    };
+    evaluate(false);
+    if (results[1]) {
+        evaluate(true);
+    }
+    evaluateBorder(tessellation, border, results[0], resultDesc);
 }
 
-// Makes the points on the border.
+// Makes the points on the border: those of a section to the bit as with all points of the face.
 template <typename REAL>
 void FaceEvaluator<REAL>::evaluateBorder(TessellationData const &tessellation,
                                          BorderEvaluator<REAL> &evaluator, REAL *p,
                                          PointDescriptor const &resultDesc) const {
-    if (tessellation.section) {
-        evaluateSectionBorder(tessellation, evaluator, p, resultDesc);
-        return;
-    }
+    std::size_t const size = evaluator.GetSize();
+    int evaluatedEdge = -1; // of which there are
+    std::vector<REAL> edgePoints;
     auto const getResult = [&](int place) { return p + std::ptrdiff_t(place) * resultDesc.stride; };
-    for (std::size_t edge = 0; edge < std::size_t(_face.size); ++edge) {
-        int const first = tessellation.firstEdgeCoords[edge];
-        int const numPlaces = tessellation.firstEdgeCoords[edge + 1] - first - 1;
+    for (TessellationData::BorderRun const &run : tessellation.border) {
+        auto const edge = std::size_t(run.edge);
         int const level = tessellation.placeLevels.ofEdges[edge];
+        int const begin = run.place + (run.index < 0 ? 1 : 0);
+        int const end = run.place + run.count;
         if (level < 0) {
-            for (int place = first + 1; place <= first + numPlaces; ++place) {
+            for (int place = begin; place < end; ++place) {
                 evaluator.EvaluateKeptPoint(edge, tessellation.GetWeightsOnEdge(edge, place),
                                             getResult(place));
             }
-        } else if (numPlaces > 0) {
-            evaluator.EvaluateEdge(edge, level, getResult(first + 1), resultDesc.stride);
-        }
-        // The edge has made the points of all rings, and the vertex finds those of its own among them.
-        evaluator.EvaluateVertex(edge, getResult(first));
-    }
-}
-
-// Evaluates the places on the border of the face, to the bit as with all points of the face.
-template <typename REAL>
-void FaceEvaluator<REAL>::evaluateSectionBorder(TessellationData const &tessellation,
-                                                BorderEvaluator<REAL> &evaluator, REAL *p,
-                                                PointDescriptor const &resultDesc) const {
-    std::size_t const size = evaluator.GetSize();
-    int evaluatedEdge = -1;
-    std::vector<REAL> edgePoints;
-    for (TessellationData::BorderRun const &run : tessellation.section->border) {
-        auto const edge = std::size_t(run.edge);
-        for (int i = 0; i < run.count; ++i) {
-            int const place = run.place + i;
-            REAL *const result = p + std::ptrdiff_t(place) * resultDesc.stride;
-            if (run.index + i < 0) {
-                evaluator.EvaluateVertex(edge, result);
-                continue;
-            }
-            int const level = tessellation.placeLevels.ofEdges[edge];
-            if (level < 0) {
-                evaluator.EvaluateKeptPoint(edge, tessellation.GetWeightsOnEdge(edge, place),
-                                            result);
-                continue;
-            }
+        } else if (run.hasWholeEdge && begin < end) {
+            evaluator.EvaluateEdge(edge, level, getResult(begin), resultDesc.stride);
+        } else if (begin < end) {
             if (run.edge != evaluatedEdge) {
-                int const numPoints = Polyline(level).GetNumPoints();
-                edgePoints.resize(std::size_t(numPoints) * size);
+                edgePoints.resize(std::size_t(Polyline(level).GetNumPoints()) * size);
                 evaluator.EvaluateEdge(edge, level, edgePoints.data(), std::ptrdiff_t(size));
                 evaluatedEdge = run.edge;
             }
-            std::copy_n(&edgePoints[std::size_t(run.index + i) * size], size, result);
+            REAL const *point = &edgePoints[std::size_t(std::max(run.index, 0)) * size];
+            for (int place = begin; place < end; ++place, point += size) {
+                std::copy_n(point, size, getResult(place));
+            }
+        }
+        // The edge has made the points of all rings, and the vertex finds those of its own among them.
+        if (run.index < 0) {
+            evaluator.EvaluateVertex(edge, getResult(run.place));
         }
     }
 }

@@ -57,13 +57,9 @@ private:
                         PointDescriptor const &resultDesc);
     void turnDerivatives(TessellationData const &tessellation, REAL *const *results,
                          PointDescriptor const &resultDesc) const;
-    template <typename FUNCTION>
-    void useBorder(FUNCTION const &function);
+    BorderEvaluator<REAL> &setBorder();
     void evaluateBorder(TessellationData const &tessellation, BorderEvaluator<REAL> &evaluator,
                         REAL *p, PointDescriptor const &resultDesc) const;
-    void evaluateSectionBorder(TessellationData const &tessellation,
-                               BorderEvaluator<REAL> &evaluator, REAL *p,
-                               PointDescriptor const &resultDesc) const;
     void sumUp(std::vector<double> const &weights, REAL *result) {
         SumUp(weights.data(), _face.numPoints, _points.Get(), nullptr,
               PointDescriptor(_size, int(_points.GetStride())), result);

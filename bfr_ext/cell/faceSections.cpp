@@ -7,6 +7,42 @@
 
 namespace OpenSubdivHex::BfrExt::internal {
 
+namespace {
+
+using FarExt::internal::BasePolygon;
+
+// The corners of a cell in the plane of its face.
+std::vector<Pair> findOutline(BasePolygon const &polygon, CellShape const &cell) {
+    std::vector<Pair> corners(std::size_t(cell.GetNumCorners(polygon.GetShape())));
+    for (std::size_t i = 0; i < corners.size(); ++i) {
+        auto const [sector, place] = cell.GetCorner(polygon.GetShape(), int(i));
+        polygon.Write(sector,
+                      {std::ldexp(double(place[0]), -CellShape::kBits),
+                       std::ldexp(double(place[1]), -CellShape::kBits)},
+                      corners[i].data());
+    }
+    return corners;
+}
+
+// Whether a side of a convex polygon has all of another polygon on its outer side.
+bool hasSideBetween(std::vector<Pair> const &polygon, std::vector<Pair> const &other) {
+    constexpr double kTolerance = 1e-12; // of areas, which are 1e-8 at least
+    for (std::size_t i = 0; i < polygon.size(); ++i) {
+        Pair const &start = polygon[i];
+        Pair const &end = polygon[i + 1 == polygon.size() ? 0 : i + 1];
+        if (std::all_of(other.begin(), other.end(), [&](Pair const &p) {
+                return (end[0] - start[0]) * (p[1] - start[1]) -
+                           (end[1] - start[1]) * (p[0] - start[0]) <
+                       -kTolerance;
+            })) {
+            return true;
+        }
+    }
+    return false;
+}
+
+} // namespace
+
 PlaceLevels::PlaceLevels(FaceLevels const &levels)
     : ofEdges(levels.levels.begin(), levels.levels.end() - 1), ofInside(levels.levels.back()),
       ofAll(*std::max_element(levels.levels.begin(), levels.levels.end())) {
@@ -114,6 +150,12 @@ CellTree FaceSections::MakeTree(int section, CellShape *shape) const {
     }
     std::reverse(path.begin(), path.end());
     CellTree tree(GetFaceShape());
+    BasePolygon const polygon(GetFaceShape());
+    std::vector<Pair> const outline = findOutline(polygon, own);
+    auto const touchesSection = [&](CellShape const &cell) {
+        std::vector<Pair> const ofCell = findOutline(polygon, cell);
+        return !hasSideBetween(outline, ofCell) && !hasSideBetween(ofCell, outline);
+    };
     auto const visit = [&](auto const &self, CellShape const &cell, int wholeCell, bool hasSection,
                            bool isInside) -> void {
         bool const isSection = hasSection && std::size_t(cell.level) == path.size();
@@ -121,9 +163,7 @@ CellTree FaceSections::MakeTree(int section, CellShape *shape) const {
             *shape = cell;
         }
         bool const isOther = !hasSection && !isInside;
-        if (!isRefined(tree, cell.number, wholeCell) ||
-            (isOther && !(own.isWhole ? cell.Touches(GetFaceShape(), own)
-                                      : own.Touches(GetFaceShape(), cell)))) {
+        if (!isRefined(tree, cell.number, wholeCell) || (isOther && !touchesSection(cell))) {
             return;
         }
         tree.Refine(cell.number);

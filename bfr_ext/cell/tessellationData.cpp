@@ -171,7 +171,7 @@ bool TessellationData::SetTree(CellTree const &cells, Polyline const edges[],
     parameterization = Parameterization(cells.GetFaceShape());
     CellMesh const mesh(cells, polylines.data());
     placeLevels = PlaceLevels(cells, polylines);
-    return setCells(mesh, mesh.GetFaceVertices());
+    return setFace(mesh);
 }
 
 bool TessellationData::SetSection(FaceSections const &sections, int number,
@@ -181,7 +181,8 @@ bool TessellationData::SetSection(FaceSections const &sections, int number,
     }
     int const size = sections.GetFaceShape().size;
     parameterization = Parameterization(sections.GetFaceShape());
-    section = Section{number, sections.GetNumSections(), {}};
+    section = number;
+    numSections = sections.GetNumSections();
     CellShape shape = {};
     CellTree cells = sections.MakeTree(number, &shape);
     std::vector<CellMesh::Vertex> polygon;
@@ -209,7 +210,7 @@ bool TessellationData::SetSection(FaceSections const &sections, int number,
             int const first = firstEdgeCoords[i];
             int const before = onEdge.end == 0 ? 0 : 1 + sections.CountPointsBefore(onEdge);
             int const count = isOnEdge(i) ? firstEdgeCoords[i + 1] - first : 1;
-            section->border.push_back({onEdge.edge, before - 1, count, first});
+            border.push_back({onEdge.edge, before - 1, count, first, false});
         }
     }
     return areSet;
@@ -254,7 +255,7 @@ bool TessellationData::SetLevels(Parameterization const &ofFace, int numLevels, 
     std::vector<Polyline> const edges(placeLevels.ofEdges.begin(), placeLevels.ofEdges.end());
     CellTree const cells(shape, levels.data(), levels.back());
     CellMesh const mesh(cells, edges.data());
-    return setCells(mesh, mesh.GetFaceVertices());
+    return setFace(mesh);
 }
 
 CellPlan const &TessellationData::GetCellPlan(bool isInLattice, bool isOfDerivatives) const {
@@ -299,6 +300,15 @@ std::vector<BfrPlace> const &TessellationData::GetBfrPlaces() const {
     return _bfrPlaces;
 }
 
+bool TessellationData::setFace(CellMesh const &mesh) {
+    bool const areSet = setCells(mesh, mesh.GetFaceVertices());
+    for (int edge = 0; edge < GetFaceSize(); ++edge) {
+        int const first = firstEdgeCoords[std::size_t(edge)];
+        border.push_back({edge, -1, firstEdgeCoords[std::size_t(edge) + 1] - first, first, true});
+    }
+    return areSet;
+}
+
 // Sets the places of a polygon: of the face, or of a section, beside which the mesh has more.
 bool TessellationData::setCells(CellMesh const &mesh,
                                 std::vector<CellMesh::Vertex> const &polygon) {
@@ -321,8 +331,8 @@ bool TessellationData::setCells(CellMesh const &mesh,
         }
     }
     firstEdgeCoords.push_back(int(order.size()));
-    std::vector<bool> isInside(mesh.GetVertices().size(), !section);
-    if (section) {
+    std::vector<bool> isInside(mesh.GetVertices().size(), numSections == 1);
+    if (numSections > 1) {
         mesh.ForEachCell([&](CellMesh::Polygon &cell) {
             for (int const vert : cell.verts) {
                 isInside[std::size_t(vert)] = true;
@@ -340,23 +350,18 @@ bool TessellationData::setCells(CellMesh const &mesh,
     return setFacets(mesh, setPlaces(mesh, order));
 }
 
-// All places in a face that is a regular polygon.
+// All places in a face that is a regular polygon, or half of one.
 std::vector<double> TessellationData::findRegularCoords() const {
-    std::vector<double> result;
-    result.reserve(coords.size());
-    double const unit = 2 * FarExt::internal::kPi / GetFaceSize();
+    std::vector<double> result(2 * places.size());
     FarExt::internal::BasePolygon const polygon(GetFaceShape());
+    double *uv = result.data();
     for (auto const &[sector, inSector] : places) {
-        if (GetFaceShape().isHalf) {
-            Pair uv;
-            polygon.Write(sector, {inSector[0], inSector[1]}, uv.data());
-            result.insert(result.end(), uv.begin(), uv.end());
-            continue;
+        polygon.Write(sector, {inSector[0], inSector[1]}, uv);
+        if (GetFaceShape() == FaceShape(3)) { // from the right-angled triangle
+            uv[0] += uv[1] / 2;
+            uv[1] *= std::sqrt(0.75);
         }
-        double const start = unit * sector;
-        double const end = unit * (sector + 1);
-        result.push_back(inSector[0] * std::cos(start) + inSector[1] * std::cos(end));
-        result.push_back(inSector[0] * std::sin(start) + inSector[1] * std::sin(end));
+        uv += 2;
     }
     return result;
 }

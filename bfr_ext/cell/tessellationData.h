@@ -11,7 +11,6 @@
 
 #include <memory>
 #include <mutex>
-#include <optional>
 #include <vector>
 
 namespace OpenSubdivHex::BfrExt::internal {
@@ -22,18 +21,13 @@ namespace OpenSubdivHex::BfrExt::internal {
 /// Nothing is changed after a function Set...(): any number of threads may use it then.
 class TessellationData {
 public:
-    /// Places on an edge of the face that follow one another in a section.
+    /// Places on an edge of the face that follow one another.
     struct BorderRun {
         int edge;
         int index; ///< which point of the edge is the first, -1 being its vertex
         int count;
         int place;
-    };
-    /// Further data of the tessellation of a section.
-    struct Section {
-        int number;
-        int count; ///< of the face
-        std::vector<BorderRun> border;
+        bool hasWholeEdge; ///< all its points
     };
 
     /// @name What the constructors of LevelTessellation take, and a section of a face
@@ -64,7 +58,7 @@ public:
     }
 
     /// Which cells the places inside lie in.
-    CellPlan const &GetCellPlan(bool isInLattice, bool isOfDerivatives = false) const;
+    CellPlan const &GetCellPlan(bool isInLattice, bool isOfDerivatives) const;
     /// All places, in a face with sub-faces.
     std::vector<BfrPlace> const &GetBfrPlaces() const;
 
@@ -74,7 +68,9 @@ public:
     int coordStride = 2;
     std::vector<int> levels; ///< of edges, then of the inside; none of a tree
     PlaceLevels placeLevels; ///< of the whole face
-    std::optional<Section> section;
+    int section = 0;
+    int numSections = 1;                   ///< of the face
+    std::vector<BorderRun> border;         ///< the places on the border of the face
     std::vector<double> coords;            ///< two of each place
     std::vector<LeafPlaces::Place> places; ///< the same, exactly, in sectors
     std::vector<int> firstEdgeCoords;   ///< by edge, the place of its first vertex; then their end
@@ -85,6 +81,7 @@ public:
 
 private:
     bool setOptions(LevelTessellation::Options const &options);
+    bool setFace(CellMesh const &mesh);
     bool setCells(CellMesh const &mesh, std::vector<CellMesh::Vertex> const &polygon);
     std::vector<int> setPlaces(CellMesh const &mesh, std::vector<int> const &order);
     bool setFacets(CellMesh const &mesh, std::vector<int> const &placesOfVertices);
