@@ -378,7 +378,7 @@ TEST(SurfacePlaces, NearSharpFeaturesHaveALevelOfTheirOwn) {
     EXPECT_LT(errors[1].largest, 0.5 * errors[0].largest);
     auto const refiner = CreateRefiner(shape, ReferenceMask::Smooth, 0, getOptions());
     auto const coarse = SurfaceFactory::Create(*refiner, getLevels(2));
-    auto const factory = coarse->CreateWith(getLevels(5));
+    auto const factory = SurfaceFactory::Create(*refiner, getLevels(5));
     int numSharp = 0;
     for (int face = 0; face < shape.GetNumFaces(); ++face) {
         PlacedSurface surfaces[2];
