@@ -11,8 +11,7 @@ namespace {
 class WeightFinder {
 public:
     WeightFinder(CellType const &type, RingCell const *cell)
-        : _type(type), _cell(cell),
-          _of(cell && cell->IsInner() ? StencilOf::Step : StencilOf::Points) {}
+        : _type(type), _cell(cell), _of(cell ? cell->GetSources() : StencilOf::Points) {}
 
     // Valid until the next call.
     std::vector<double> const &Find(double point) {

@@ -182,13 +182,11 @@ void CellStencil::takeStep(Place &place) {
 
 void CellStencil::addCorner(Place const &place, std::size_t corner, double weight,
                             bool hasDerivatives) {
-    if (!hasDerivatives) {
-        add(_weights[0], weight, place.type->GetCornerPoints()[corner]);
-        return;
+    add(_weights[0], weight, place.type->GetCornerPoints()[corner]);
+    if (hasDerivatives) {
+        place.AddDerivatives(corner, weight, place.type->GetDerivatives(int(corner)).rows,
+                             _weights + 1);
     }
-    CellType::Corner const &values = place.type->GetCorners()[corner];
-    add(_weights[0], weight, values.point);
-    place.AddDerivatives(corner, weight, values.derivatives, _weights + 1);
 }
 
 // Takes the steps back, and from derivatives what rounding has left.
@@ -231,7 +229,7 @@ void CellStencil::Find(BasePoint const &point, bool hasDerivatives) {
         _weights[1].assign(_weights[0].size(), 0.0);
         _weights[2] = _weights[1];
         root.AddDerivatives(std::size_t(rootCorner), 1,
-                            root.type->GetDerivativesOfStep(rootCorner).rows, _weights + 1);
+                            root.type->GetDerivatives(rootCorner, _of).rows, _weights + 1);
     }
 }
 
@@ -284,7 +282,7 @@ void CellStencil::addSecondBetweenCorners(Place const &place) {
         for (std::vector<double> &row : byUv) {
             row.assign(std::size_t(place.type->GetNumPoints()), 0.0);
         }
-        place.AddDerivatives(i, 1, place.type->GetCorners()[i].derivatives, byUv);
+        place.AddDerivatives(i, 1, place.type->GetDerivatives(int(i)).rows, byUv);
         auto const [u, v] = corners[i];
         Pair const slope = {(vv * u - uv * v) / determinant, (uu * v - uv * u) / determinant};
         add(_secondWeights[0], slope[0], byUv[0]);

@@ -27,12 +27,6 @@ CellStep FindCellStep(FaceShape shape, int sector, Pair const &coords);
 /// \param shape  of a whole cell; of size 0: of half cells
 int FindCellCorner(FaceShape shape, int sector, Pair const &coords);
 
-/// Sources of stencils.
-enum class StencilOf {
-    Points, ///< of a type
-    Step    ///< what the step of the type makes, by row of CellType::GetStep()
-};
-
 /// \brief The stencils of points of a base face and of their derivatives by u and v, which are the coordinates of its
 /// plane here.
 ///

@@ -87,11 +87,8 @@ void CellValues::SetChild(CellValues const &parent, int child) {
                 },
                 _indices.data());
             for (std::size_t i = 0; i < columns.size(); ++i) {
-                double const *const from = &parent._refined[std::size_t(_indices[i]) * _paddedSize];
-                double *const to = &points[std::size_t(columns[i]) * _paddedSize];
-                for (std::size_t k = 0; k < _paddedSize; k += StepMatrix::kPadding) {
-                    std::copy_n(from + k, StepMatrix::kPadding, to + k);
-                }
+                StepMatrix::CopyPadded(&parent._refined[std::size_t(_indices[i]) * _paddedSize],
+                                       _paddedSize, &points[std::size_t(columns[i]) * _paddedSize]);
             }
         };
         _type = &cell.GetType();
@@ -180,9 +177,9 @@ void CellValues::EvaluateCorner(int corner, double *du, double *dv) const {
     for (std::size_t i = 0; i < 2; ++i) {
         double *const result = _scratch.data() + i * length;
         if (_isInner) {
-            sum(type.GetDerivativesOfStep(corner).rows[i], _refined, result);
+            sum(type.GetDerivatives(corner, StencilOf::Step).rows[i], _refined, result);
         } else {
-            sum(type.GetCorners()[std::size_t(corner)].derivatives[i], _points, result);
+            sum(type.GetDerivatives(corner).rows[i], _points, result);
         }
     }
     for (std::size_t k = 0; k < length; ++k) {

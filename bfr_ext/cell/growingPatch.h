@@ -41,9 +41,8 @@ public:
         Point first;
         std::uint8_t numPoints;
     };
-    /// Writes where the vertices that are not inner were met.
-    /// \return  the end of what was written
-    Run *GetRuns(Run *runs) const;
+    /// Where the vertices that are not inner were met.
+    std::vector<Run> GetRuns() const;
     /// Has Add() keep the faces; behind Start().
     void KeepFaces();
     /// The sizes and the vertices of the faces that were kept; inner vertices come before others.

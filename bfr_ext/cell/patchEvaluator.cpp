@@ -32,8 +32,7 @@ PlaceMatrix<REAL> const &getFaceDerivatives(RingCell const &child) {
     constexpr int kKind = PatternTable::GetKind<REAL>(PatternOf::FaceCorner);
     return child.GetPatterns().Get<PlaceMatrix<REAL>>(kKind, nullptr, nullptr, [&] {
         CellType const &type = child.GetType();
-        CellType::Derivatives const &derivatives =
-            child.IsInner() ? type.GetParentDerivativesOfStep(0) : type.GetParentDerivatives(0);
+        CellType::Derivatives const &derivatives = type.GetDerivatives(0, child.GetSources(), true);
         return makeDerivatives<REAL>(child, [&](std::size_t k) {
             return HalfCell::kFromSector.GetDerivatives(derivatives.rows, k);
         });
@@ -45,7 +44,8 @@ template <typename REAL>
 PlaceMatrix<REAL> const &getCornerDerivatives(RingCell const &child, int corner) {
     constexpr int kKind = PatternTable::GetKind<REAL>(PatternOf::ChildCorner);
     return child.GetPatterns().Get<PlaceMatrix<REAL>>(kKind, &corner, &corner + 1, [&] {
-        CellType::Derivatives const &derivatives = child.GetType().GetDerivativesOfStep(corner);
+        CellType::Derivatives const &derivatives =
+            child.GetType().GetDerivatives(corner, child.GetSources());
         return makeDerivatives<REAL>(child, [&](std::size_t k) -> std::vector<double> const & {
             return derivatives.rows[k];
         });
@@ -58,8 +58,8 @@ PlaceMatrix<REAL> const &getCornerDerivatives(RingCell const &child, int corner)
 template <typename REAL>
 typename PlaceSource<REAL>::Matrices
 PlaceSource<REAL>::MakeMatrices(std::vector<BfrPlace> const &places, bool hasDerivatives) const {
-    bool const isOfStep = ringCell && ringCell->IsInner();
-    CellStencil stencil(type, isOfStep ? StencilOf::Step : StencilOf::Points);
+    StencilOf const of = ringCell ? ringCell->GetSources() : StencilOf::Points;
+    CellStencil stencil(type, of);
     std::size_t const numColumns =
         ringCell ? ringCell->GetColumns().size() : std::size_t(type.GetNumPoints());
     Matrices result = {{}, hasDerivatives ? std::size_t(2) : std::size_t(1)};
@@ -83,8 +83,7 @@ PlaceSource<REAL>::MakeMatrices(std::vector<BfrPlace> const &places, bool hasDer
         std::vector<double> const *along[2] = {&stencil.GetDuWeights(), &stencil.GetDvWeights()};
         // Vertices of the face have the derivatives of the face.
         if (ringCell && !type.IsWhole() && place.point.coords == HalfCell::kCorners[0]) {
-            CellType::Derivatives const &ofFace =
-                isOfStep ? type.GetParentDerivativesOfStep(0) : type.GetParentDerivatives(0);
+            CellType::Derivatives const &ofFace = type.GetDerivatives(0, of, true);
             along[0] = &ofFace.rows[0];
             along[1] = &ofFace.rows[1];
         }
@@ -293,9 +292,9 @@ void PatchEvaluator<REAL>::evaluateCorners(CellType const &type, CellPlan::Node 
             }
             continue;
         }
-        CellType::Corner const &ofType = type.GetCorners()[corner.corner];
+        CellType::Derivatives const &ofType = type.GetDerivatives(int(corner.corner));
         for (std::size_t k = 0; k < _size; ++k) {
-            double const along[2] = {sum(ofType.derivatives[0], k), sum(ofType.derivatives[1], k)};
+            double const along[2] = {sum(ofType.rows[0], k), sum(ofType.rows[1], k)};
             for (std::size_t i = 0; i < 2; ++i) {
                 _results[i][first + std::ptrdiff_t(k)] =
                     REAL(corner.toCoords[0][i] * along[0] + corner.toCoords[1][i] * along[1]);

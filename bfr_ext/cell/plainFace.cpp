@@ -7,9 +7,7 @@
 
 #include <algorithm>
 #include <cstring>
-#include <new>
 #include <numeric>
-#include <type_traits>
 #include <utility>
 
 namespace OpenSubdivHex::BfrExt::internal {
@@ -30,8 +28,8 @@ int getFaceSize(Level const &level, Far::Index place) {
 
 // Whether the faces of a key are a piece of a regular lattice.
 bool isInLattice(PlainFaceKey const &key, int numVerts) {
-    std::uint8_t const *const numFaces = key.GetBytes() + 1;
-    int const valence = CellType::GetLatticeValence(key.GetBytes()[0]); // 0 where sizes differ
+    std::uint8_t const *const numFaces = key.begin() + 1;
+    int const valence = CellType::GetLatticeValence(key.begin()[0]); // 0 where sizes differ
     return std::all_of(numFaces, numFaces + numVerts,
                        [&](int number) { return number == valence; });
 }
@@ -51,8 +49,6 @@ bool grow(std::uint8_t const *key, int numVerts, GrowingPatch &patch) {
     return patch.GetNumInner() == numVerts;
 }
 
-int getFaceSize(std::uint8_t const *key) { return key[0] & ~kHasSizes; }
-
 } // namespace
 
 std::size_t PlainFaceKey::GetHash() const {
@@ -71,32 +67,14 @@ std::size_t PlainFaceKey::GetHash() const {
 }
 
 PlainFaceType::PlainFaceType(PlainFaceTypes &types, PlainFaceKey const &key, int numVerts,
-                             int numRuns, int numOthers)
-    : hash(key.GetHash()), _types(types), _keySize(key.GetSize()), _numVerts(numVerts),
-      _numRuns(numRuns), _numOthers(numOthers), _isInLattice(isInLattice(key, numVerts)) {}
-
-PlainFaceType const *PlainFaceType::Make(PlainFaceTypes &types, PlainFaceKey const &key,
-                                         int numVerts, GrowingPatch const &patch,
-                                         ByteBlocks &blocks) {
-    static_assert(alignof(Run) == 1 && std::is_trivially_copyable_v<Run>);
-    Run runs[GrowingPatch::kMaxVerts];
-    Run const *const end = patch.GetRuns(runs);
-    auto const sizeOfRuns = std::size_t(end - runs) * sizeof(Run);
-    std::byte *const memory = blocks.Take(sizeof(PlainFaceType) + key.GetSize() + sizeOfRuns);
-    std::byte *const bytes = memory + sizeof(PlainFaceType);
-    std::memcpy(bytes, key.GetBytes(), key.GetSize());
-    std::memcpy(bytes + key.GetSize(), runs, sizeOfRuns);
-    int const numOthers =
-        std::accumulate(static_cast<Run const *>(runs), end, 0,
-                        [](int count, Run const &run) { return count + run.numPoints; });
-    return new (memory) PlainFaceType(types, key, numVerts, int(end - runs), numOthers);
-}
+                             GrowingPatch const &patch)
+    : hash(key.GetHash()), _types(types), _key(key.begin(), key.end()), _numVerts(numVerts),
+      _runs(patch.GetRuns()),
+      _numPoints(std::accumulate(_runs.begin(), _runs.end(), numVerts,
+                                 [](int count, Run const &run) { return count + run.numPoints; })),
+      _isInLattice(isInLattice(key, numVerts)) {}
 
 PlainFaceType::~PlainFaceType() { delete _rings.load(); }
-
-bool PlainFaceType::HasKey(PlainFaceKey const &key) const {
-    return key.GetSize() == _keySize && std::memcmp(key.GetBytes(), getKey(), _keySize) == 0;
-}
 
 // A vertex has its neighbours in the patch.
 static_assert(PlainFaceKey::kMaxVerts <= InnerRings::kMaxFaces);
@@ -123,9 +101,9 @@ CellType const &PlainFaceType::make() const {
 
 CellPatch PlainFaceType::makeCell() const {
     static thread_local GrowingPatch patch;
-    patch.Start(getFaceSize(getKey()));
+    patch.Start(_key[0] & ~kHasSizes);
     patch.KeepFaces();
-    grow(getKey(), _numVerts, patch);
+    grow(_key.data(), _numVerts, patch);
     std::vector<int> faceSizes;
     std::vector<Far::Index> faceVerts;
     patch.GetFaces(faceSizes, faceVerts);
@@ -188,11 +166,9 @@ CellType::BorderItem PlainFaceType::makeLatticeItem(CellPatch const &cell, int c
     auto const numEdges = std::size_t(cell.GetNumCorners());
     bool const isEdge = item < numEdges;
     CellRules const &rules = _types._ringCells.GetRules();
-    LatticeItem const &lattice = _types._ringCells.FindLatticeItem(
+    CellType const &type = _types._ringCells.FindLatticeItem(
         isEdge ? CellKind::Edge : CellKind::Vertex, cell.GetNumCorners(), [&] {
-            CellPatch patch = std::move(GatherBorder(cell, turns, rules.sdcOptions)[item]);
-            CellType const &type = _types._types.Find(patch, rules);
-            return LatticeItem{std::move(patch), &type};
+            return &_types._types.Find(GatherBorder(cell, turns, rules.sdcOptions)[item], rules);
         });
     // The corner of the face, or of another one, that is the first of the item.
     PatchCorners const corners(cell.patch);
@@ -201,47 +177,37 @@ CellType::BorderItem PlainFaceType::makeLatticeItem(CellPatch const &cell, int c
         corner = isEdge ? cell.patch.otherCorners[std::size_t(corner)]
                         : corners.GetNext(cell.patch.otherCorners[std::size_t(corner)], 1);
     }
-    CellType::BorderItem result = {lattice.type, {}, isEdge && turns[item] == 1, nullptr};
-    return findInPatch(lattice.cell, lattice.cell.locals[0], cell, corner, result.points)
+    CellType::BorderItem result = {&type, {}, isEdge && turns[item] == 1, nullptr};
+    CellPatch const lattice = type.MakeCell();
+    return findInPatch(lattice, lattice.locals[0], cell, corner, result.points)
                ? result
                : Get().GetBorderItem(turns, item);
 }
 
 CellType::BorderItem const &PlainFaceType::GetLatticeItem(int const *turns,
                                                           std::size_t item) const {
-    auto const get = [&](std::size_t i, auto const &make) -> CellType::BorderItem const & {
-        int const key[2] = {int(i), turns[i]};
-        return GetRings().GetPatterns().Get<CellType::BorderItem>(
-            PatternTable::GetKind<double>(PatternOf::LatticeItem), key, key + 2, make);
-    };
-    return get(item, [&] {
+    FaceRings const &rings = GetRings();
+    return CellType::FindBorderItem(rings.GetPatterns(), turns, item, [&] {
         CellPatch const cell = makeCell();
-        // The others are asked for, too.
-        FaceRings const &rings = GetRings();
         int const numEdges = cell.GetNumCorners();
+        std::vector<CellType::BorderItem> items(2 * std::size_t(numEdges));
         for (int i = 0; i < 2 * numEdges; ++i) {
-            bool const isInLattice =
-                i < numEdges ? rings.IsEdgeInLattice(i) : rings.IsVertexInLattice(i - numEdges);
-            if (isInLattice && std::size_t(i) != item) {
-                get(std::size_t(i), [&] { return makeLatticeItem(cell, turns, std::size_t(i)); });
+            if (i < numEdges ? rings.IsEdgeInLattice(i) : rings.IsVertexInLattice(i - numEdges)) {
+                items[std::size_t(i)] = makeLatticeItem(cell, turns, std::size_t(i));
             }
         }
-        return makeLatticeItem(cell, turns, item);
+        return items;
     });
 }
 
 PlainFaceType const &PlainFaceTypes::Add(PlainFaceKey const &key, int numVerts,
                                          GrowingPatch const &patch) {
-    decltype(_entries)::Pointer made;
-    {
-        std::lock_guard<std::mutex> const lock(_mutex);
-        made.reset(PlainFaceType::Make(*this, key, numVerts, patch, _blocks));
-    }
-    auto const [type, isNew] = _entries.Add(
-        std::move(made), [&](PlainFaceType const &other) { return other.HasKey(key); });
+    auto const [type, isNew] =
+        _entries.Add(std::make_unique<PlainFaceType const>(*this, key, numVerts, patch),
+                     [&](PlainFaceType const &other) { return other.HasKey(key); });
     if (isNew) {
         ++_numUnmade;
-        _types.GetMemory().Add(decltype(_entries)::kEntrySize + type->GetSizeOfBytes());
+        _types.GetMemory().Add(decltype(_entries)::kEntrySize + type->GetHeapSize());
     }
     return *type;
 }
@@ -295,7 +261,7 @@ bool PlainFaceGatherer::findVertices(Level const &level, Index face) {
 
 // Adds the sizes of faces to the key, where they differ; false where they are too many or too large.
 bool PlainFaceGatherer::addSizes(Level const &level) {
-    std::size_t const size = _key.GetSize();
+    auto const size = std::size_t(_key.end() - _key.begin());
     bool hasSizes = false;
     for (int i = 0; i < _numVerts; ++i) {
         Vertex const &vert = _verts[i];
@@ -337,7 +303,7 @@ bool PlainFaceGatherer::writePoints(PlainFaceType const &type, Index *points) {
         *end++ = point;
     };
     std::for_each_n(_verts, _numVerts, [&](Vertex const &vert) { add(vert.vert); });
-    std::for_each(type.GetRuns(), type.GetEndOfRuns(), [&](PlainFaceType::Run const &run) {
+    for (PlainFaceType::Run const &run : type.GetRuns()) {
         Index place = _verts[run.first.vert].GetPlace(run.first.place);
         for (int corner = 1; corner < run.first.corner; ++corner) {
             place = nexts[place].place;
@@ -347,7 +313,7 @@ bool PlainFaceGatherer::writePoints(PlainFaceType const &type, Index *points) {
             place = next.place;
             add(next.vert);
         }
-    });
+    }
     if (!mayBeSame) {
         return true;
     }
@@ -379,7 +345,7 @@ PlainFaceType const *PlainFaceGatherer::findType(PlainFaceTypes &types, FaceWalk
         return type;
     }
     _patch.Start(_faceSize);
-    return grow(_key.GetBytes(), _numVerts, _patch) ? &types.Add(_key, _numVerts, _patch) : nullptr;
+    return grow(_key.begin(), _numVerts, _patch) ? &types.Add(_key, _numVerts, _patch) : nullptr;
 }
 
 // False where points are the same.

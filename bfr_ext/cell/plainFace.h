@@ -2,16 +2,16 @@
 #ifndef OPENSUBDIVHEX_BFR_EXT_CELL_PLAIN_FACE_H
 #define OPENSUBDIVHEX_BFR_EXT_CELL_PLAIN_FACE_H
 
-#include "byteBlocks.h"
 #include "cellType.h"
 #include "faceWalk.h"
 #include "growingPatch.h"
 #include "ringCell.h"
 
+#include <algorithm>
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
-#include <mutex>
+#include <vector>
 
 namespace OpenSubdivHex::BfrExt::internal {
 
@@ -35,8 +35,8 @@ public:
     /// Leaves so many numbers.
     void Truncate(std::size_t size) { _size = size; }
 
-    std::uint8_t const *GetBytes() const { return _bytes; }
-    std::size_t GetSize() const { return _size; }
+    std::uint8_t const *begin() const { return _bytes; }
+    std::uint8_t const *end() const { return _bytes + _size; }
     std::size_t GetHash() const;
 
 private:
@@ -50,26 +50,24 @@ class PlainFaceType {
 public:
     using Run = GrowingPatch::Run;
 
-    /// Makes one in blocks, in which its bytes lie behind it.
-    ///
     /// \param numVerts  all of whose faces are in the patch
     /// \param patch     that of the key
-    static PlainFaceType const *Make(PlainFaceTypes &types, PlainFaceKey const &key, int numVerts,
-                                     GrowingPatch const &patch, ByteBlocks &blocks);
+    PlainFaceType(PlainFaceTypes &types, PlainFaceKey const &key, int numVerts,
+                  GrowingPatch const &patch);
     ~PlainFaceType();
     PlainFaceType(PlainFaceType const &) = delete;
     PlainFaceType &operator=(PlainFaceType const &) = delete;
 
     std::size_t const hash; ///< of the key
 
-    bool HasKey(PlainFaceKey const &key) const;
-    /// Bytes of the key and the points.
-    std::size_t GetSizeOfBytes() const { return _keySize + std::size_t(_numRuns) * sizeof(Run); }
-    int GetNumPoints() const { return _numVerts + _numOthers; }
+    bool HasKey(PlainFaceKey const &key) const {
+        return std::equal(key.begin(), key.end(), _key.begin(), _key.end());
+    }
+    /// Without what is made on demand.
+    std::size_t GetHeapSize() const { return GetHeapSizes(_key, _runs); }
+    int GetNumPoints() const { return _numPoints; }
     /// The points behind the vertices whose faces are all there.
-    Run const *GetRuns() const { return reinterpret_cast<Run const *>(getKey() + _keySize); }
-    /// The end of these.
-    Run const *GetEndOfRuns() const { return GetRuns() + _numRuns; }
+    std::vector<Run> const &GetRuns() const { return _runs; }
     /// The type that evaluates the points, made on demand.
     CellType const &Get() const {
         CellType const *const type = _type.load(std::memory_order_acquire);
@@ -87,10 +85,6 @@ public:
     CellType::BorderItem const &GetLatticeItem(int const *turns, std::size_t item) const;
 
 private:
-    PlainFaceType(PlainFaceTypes &types, PlainFaceKey const &key, int numVerts, int numRuns,
-                  int numOthers);
-
-    std::uint8_t const *getKey() const { return reinterpret_cast<std::uint8_t const *>(this + 1); }
     CellType const &make() const;
     FaceRings const &makeRings() const;
     FarExt::internal::CellPatch makeCell() const;
@@ -98,11 +92,10 @@ private:
                                          std::size_t item) const;
 
     PlainFaceTypes &_types;
-    // Behind this there are the key, and the runs of other points.
-    std::size_t const _keySize;
+    std::vector<std::uint8_t> const _key;
     int const _numVerts;
-    int const _numRuns;
-    int const _numOthers;
+    std::vector<Run> const _runs;
+    int const _numPoints;
     bool const _isInLattice;
     mutable std::atomic<FaceRings const *> _rings{nullptr};
     mutable std::atomic<CellType const *> _type{nullptr};
@@ -124,15 +117,9 @@ public:
 private:
     friend class PlainFaceType;
 
-    struct Destroy {
-        void operator()(PlainFaceType const *type) const { type->~PlainFaceType(); }
-    };
-
     CellTypes &_types;
     RingCells &_ringCells;
-    std::mutex _mutex;
-    ByteBlocks _blocks{1 << 12};
-    EntryTable<PlainFaceType, Destroy> _entries;
+    EntryTable<PlainFaceType> _entries;
     std::atomic<std::size_t> _numUnmade{0};
 };
 

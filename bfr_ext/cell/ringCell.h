@@ -110,6 +110,7 @@ public:
     std::vector<int> GetKey() const;
     /// Whether its sums are of what the step of the type makes, and not of the points of the type.
     bool IsInner() const { return _isInner; }
+    StencilOf GetSources() const { return _isInner ? StencilOf::Step : StencilOf::Points; }
     /// The step that makes what its sums are of.
     RingStep GetLastStep() const { return _lastStep; }
     /// The places of the cell's points.
@@ -132,14 +133,6 @@ private:
     RingPlaces const _points;
     RingPlaces const _inner;
     mutable PatternTable _patterns;
-};
-
-/// An edge or a vertex in a lattice, of any face, with its patch.
-struct LatticeItem {
-    std::size_t GetHeapSize() const { return GetCellHeapSize(cell); }
-
-    FarExt::internal::CellPatch cell;
-    CellType const *type;
 };
 
 /// Product of the first step of an edge of plain base faces, seen from one of them.
@@ -192,9 +185,9 @@ public:
     /// \brief Returns the first result of make() for a kind of items in the lattice of a size of faces: mostly all
     /// look like it.
     template <typename MAKE>
-    LatticeItem const &FindLatticeItem(FarExt::internal::CellKind kind, int faceSize,
-                                       MAKE const &make) {
-        return _latticeItems.Get<LatticeItem>(int(kind), &faceSize, &faceSize + 1, make);
+    CellType const &FindLatticeItem(FarExt::internal::CellKind kind, int faceSize,
+                                    MAKE const &make) {
+        return *find<CellType const *>(_latticeItems, int(kind), {faceSize}, make);
     }
 
 private:
@@ -211,7 +204,7 @@ private:
     InnerMasks _masks;
     PatternTable _found; // pointers, by kind and rings
     PatternTable _faces;
-    PatternTable _latticeItems;
+    PatternTable _latticeItems; // pointers to types
 };
 
 /// \brief An edge or a vertex of a base face that has rings of its own, since the face itself is not plain or
