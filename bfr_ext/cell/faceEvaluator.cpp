@@ -202,64 +202,61 @@ void FaceEvaluator<REAL>::evaluateTree(TessellationData const &tessellation, REA
     });
 }
 
-// Makes the points on the border.
+// Makes the points on the border: of a section, to the bit as with all points of the face.
 template <typename REAL>
 void FaceEvaluator<REAL>::evaluateBorder(TessellationData const &tessellation,
                                          BorderEvaluator<REAL> &evaluator, REAL *p,
                                          PointDescriptor const &resultDesc) const {
-    if (tessellation.section) {
-        evaluateSectionBorder(tessellation, evaluator, p, resultDesc);
-        return;
-    }
     auto const getResult = [&](int place) { return p + std::ptrdiff_t(place) * resultDesc.stride; };
-    for (std::size_t edge = 0; edge < std::size_t(_face.size); ++edge) {
-        int const first = tessellation.firstEdgeCoords[edge];
-        int const numPlaces = tessellation.firstEdgeCoords[edge + 1] - first - 1;
-        int const level = tessellation.GetEdgeLevel(edge);
-        if (level < 0) {
-            for (int place = first + 1; place <= first + numPlaces; ++place) {
-                evaluator.EvaluateKeptPoint(edge, tessellation.GetWeightsOnEdge(edge, place),
-                                            getResult(place));
-            }
-        } else if (numPlaces > 0) {
-            evaluator.EvaluateEdge(edge, level, getResult(first + 1), resultDesc.stride);
-        }
-        // The edge has made the points of all rings, and the vertex finds those of its own among them.
-        evaluator.EvaluateVertex(edge, getResult(first));
-    }
-}
-
-// Evaluates the places on the border of the face, to the bit as with all points of the face.
-template <typename REAL>
-void FaceEvaluator<REAL>::evaluateSectionBorder(TessellationData const &tessellation,
-                                                BorderEvaluator<REAL> &evaluator, REAL *p,
-                                                PointDescriptor const &resultDesc) const {
     std::size_t const size = evaluator.GetSize();
     int evaluatedEdge = -1;
     std::vector<REAL> edgePoints;
-    for (TessellationData::BorderRun const &run : tessellation.section->border) {
-        auto const edge = std::size_t(run.edge);
-        for (int i = 0; i < run.count; ++i) {
-            int const place = run.place + i;
-            REAL *const result = p + std::ptrdiff_t(place) * resultDesc.stride;
-            if (run.index + i < 0) {
-                evaluator.EvaluateVertex(edge, result);
-                continue;
+    auto const evaluateInside = [&](int edge, int firstIndex, int firstPlace, int count) {
+        int const level = tessellation.GetEdgeLevel(std::size_t(edge));
+        if (level < 0) {
+            for (int place = firstPlace; place < firstPlace + count; ++place) {
+                evaluator.EvaluateKeptPoint(std::size_t(edge),
+                                            tessellation.GetWeightsOnEdge(std::size_t(edge), place),
+                                            getResult(place));
             }
-            int const level = tessellation.GetEdgeLevel(edge);
-            if (level < 0) {
-                evaluator.EvaluateKeptPoint(edge, tessellation.GetWeightsOnEdge(edge, place),
-                                            result);
-                continue;
-            }
-            if (run.edge != evaluatedEdge) {
-                int const numPoints = Polyline(level).GetNumPoints();
-                edgePoints.resize(std::size_t(numPoints) * size);
-                evaluator.EvaluateEdge(edge, level, edgePoints.data(), std::ptrdiff_t(size));
-                evaluatedEdge = run.edge;
-            }
-            std::copy_n(&edgePoints[std::size_t(run.index + i) * size], size, result);
+            return;
         }
+        if (!tessellation.section) {
+            evaluator.EvaluateEdge(std::size_t(edge), level, getResult(firstPlace),
+                                   resultDesc.stride);
+            return;
+        }
+        if (edge != evaluatedEdge) {
+            edgePoints.resize(std::size_t(Polyline(level).GetNumPoints()) * size);
+            evaluator.EvaluateEdge(std::size_t(edge), level, edgePoints.data(),
+                                   std::ptrdiff_t(size));
+            evaluatedEdge = edge;
+        }
+        for (int i = 0; i < count; ++i) {
+            std::copy_n(&edgePoints[std::size_t(firstIndex + i) * size], size,
+                        getResult(firstPlace + i));
+        }
+    };
+    auto const evaluateRun = [&](TessellationData::BorderRun const &run) {
+        int const numVertices = run.index < 0 ? 1 : 0;
+        if (run.count > numVertices) {
+            evaluateInside(run.edge, run.index + numVertices, run.place + numVertices,
+                           run.count - numVertices);
+        }
+        // The edge has made the points of all rings, and the vertex finds those of its own among them.
+        if (numVertices > 0) {
+            evaluator.EvaluateVertex(std::size_t(run.edge), getResult(run.place));
+        }
+    };
+    if (tessellation.section) {
+        std::for_each(tessellation.section->border.begin(), tessellation.section->border.end(),
+                      evaluateRun);
+        return;
+    }
+    for (int edge = 0; edge < _face.size; ++edge) {
+        int const first = tessellation.firstEdgeCoords[std::size_t(edge)];
+        int const end = tessellation.firstEdgeCoords[std::size_t(edge) + 1];
+        evaluateRun({edge, -1, end - first, first});
     }
 }
 

@@ -64,9 +64,6 @@ private:
     void useBorder(FUNCTION const &function);
     void evaluateBorder(TessellationData const &tessellation, BorderEvaluator<REAL> &evaluator,
                         REAL *p, PointDescriptor const &resultDesc) const;
-    void evaluateSectionBorder(TessellationData const &tessellation,
-                               BorderEvaluator<REAL> &evaluator, REAL *p,
-                               PointDescriptor const &resultDesc) const;
     void sumUp(std::vector<double> const &weights, REAL *result) {
         SumUp(weights.data(), _face.numPoints, _points.Get(), nullptr,
               PointDescriptor(_size, int(_points.GetStride())), result);
