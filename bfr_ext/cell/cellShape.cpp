@@ -1,76 +1,41 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cellShape.h"
 
+#include "far_ext/vtr/basePolygon.h"
+
 #include <algorithm>
+#include <vector>
 
 namespace OpenSubdivHex::BfrExt::internal {
 
 namespace {
 
-using Place = CellShape::Place;
-
-// The corners of a cell that lie in a sector, or on the lines at its sides, in the coordinates there, and
-// whether each of them has a side to the next that lies there, too.
-struct Outline {
-    std::array<Place, 4> corners;
-    std::array<Place, 4> ends;
-    std::array<bool, 4> hasCorner;
-    std::array<bool, 4> hasSide;
-};
-
-// Changes a place of one sector to what it is in another, if it lies there, too.
-bool changeSector(int faceSize, int from, int to, Place &place) {
-    if (from == to) {
-        return true;
+// The corners of a cell in the plane of its face, counter-clockwise.
+std::vector<Pair> findCornersInPlane(FaceShape shape, CellShape const &cell) {
+    FarExt::internal::BasePolygon const polygon(shape);
+    std::vector<Pair> corners;
+    for (int i = 0; i < cell.GetNumCorners(shape); ++i) {
+        auto const [sector, place] = cell.GetCorner(shape, i);
+        Pair const start = polygon.GetCorner(sector);
+        Pair const end = polygon.GetCorner((sector + 1) % shape.size);
+        corners.push_back(
+            {place[0] * start[0] + place[1] * end[0], place[0] * start[1] + place[1] * end[1]});
     }
-    if (to == (from + 1) % faceSize && place[0] == 0) {
-        place = {place[1], 0};
-        return true;
-    }
-    if (from == (to + 1) % faceSize && place[1] == 0) {
-        place = {0, place[0]};
-        return true;
-    }
-    return false;
+    return corners;
 }
 
-Outline makeOutline(int faceSize, int sector, CellShape const &cell) {
-    Outline outline = {};
-    if (cell.isWhole) {
-        outline.corners[0] = {cell.scale, 0};
-        outline.corners[1] = {0, cell.scale};
-        outline.ends[0] = outline.corners[1];
-        outline.hasCorner = {true, true, false, false};
-        outline.hasSide[0] = true;
-        return outline;
-    }
-    outline.corners = cell.corners;
-    for (std::size_t i = 0; i < 4; ++i) {
-        outline.hasCorner[i] = changeSector(faceSize, cell.sector, sector, outline.corners[i]);
-    }
-    for (std::size_t i = 0; i < 4; ++i) {
-        std::size_t const next = (i + 1) % 4;
-        outline.ends[i] = outline.corners[next];
-        outline.hasSide[i] = outline.hasCorner[i] && outline.hasCorner[next];
-    }
-    return outline;
-}
-
-bool isBetween(Place const &place, Place const &start, Place const &end) {
-    std::int64_t const along[2] = {end[0] - start[0], end[1] - start[1]};
-    std::int64_t const to[2] = {place[0] - start[0], place[1] - start[1]};
-    std::int64_t const product = along[0] * to[0] + along[1] * to[1];
-    return along[0] * to[1] == along[1] * to[0] && 0 <= product &&
-           product <= along[0] * along[0] + along[1] * along[1];
-}
-
-// Whether a corner of a lies on a side of b.
-bool hasCornerOnSide(Outline const &a, Outline const &b) {
-    for (std::size_t i = 0; i < 4; ++i) {
-        for (std::size_t k = 0; a.hasCorner[i] && k < 4; ++k) {
-            if (b.hasSide[k] && isBetween(a.corners[i], b.corners[k], b.ends[k])) {
-                return true;
-            }
+// Whether all corners of one convex polygon are beyond a side of the other.
+bool isBeyondSide(std::vector<Pair> const &corners, std::vector<Pair> const &other) {
+    constexpr double kTolerance = 1e-6; // of areas, in units of whole numbers
+    for (std::size_t i = 0; i < other.size(); ++i) {
+        Pair const &start = other[i];
+        Pair const &end = other[(i + 1) % other.size()];
+        if (std::all_of(corners.begin(), corners.end(), [&](Pair const &corner) {
+                return (end[0] - start[0]) * (corner[1] - start[1]) -
+                           (end[1] - start[1]) * (corner[0] - start[0]) <
+                       -kTolerance;
+            })) {
+            return true;
         }
     }
     return false;
@@ -78,18 +43,10 @@ bool hasCornerOnSide(Outline const &a, Outline const &b) {
 
 } // namespace
 
-// Cells have their corners on the sides of those that they meet, or have corners of these on their own.
 bool CellShape::Touches(FaceShape shape, CellShape const &other) const {
-    int const faceSize = shape.size;
-    if (!other.isWhole) {
-        int const turn = (other.sector - sector + faceSize) % faceSize;
-        if (turn > 1 && turn < faceSize - 1) {
-            return false;
-        }
-    }
-    Outline const own = makeOutline(faceSize, sector, *this);
-    Outline const others = makeOutline(faceSize, sector, other);
-    return hasCornerOnSide(own, others) || hasCornerOnSide(others, own);
+    std::vector<Pair> const own = findCornersInPlane(shape, *this);
+    std::vector<Pair> const others = findCornersInPlane(shape, other);
+    return !isBeyondSide(own, others) && !isBeyondSide(others, own);
 }
 
 } // namespace OpenSubdivHex::BfrExt::internal

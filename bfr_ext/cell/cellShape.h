@@ -30,10 +30,9 @@ struct CellShape : CellOutline<std::array<std::int32_t, 2>> {
                 tree.GetFirstChild(number) + child, level + 1};
     }
 
-    /// Whether a half cell has a point in common with another cell.
+    /// Whether it has a point in common with another cell.
     ///
     /// \param shape  that of the face
-    /// \param other  has not that cell inside of it, nor lies inside of that
     bool Touches(FaceShape shape, CellShape const &other) const;
 
     int number; ///< in the tree

@@ -292,13 +292,13 @@ void CellStencil::addSecondBetweenCorners(Place const &place) {
     }
 }
 
-void BorderStencil::Find(CellType const &root, double point, StencilOf of) {
-    _steps.clear();
+std::vector<double> FindBorderStencil(CellType const &root, double point, StencilOf of) {
+    std::vector<ChildStep const *> steps;
     CellType const *type = &root;
     bool const isVertex = root.GetNumCorners() == 1;
     auto const isAtEnd = [&] { return isVertex || point == 0 || point == 1; };
     for (int depth = 0; depth < kLastDepth; ++depth) {
-        if (isAtEnd() && (of == StencilOf::Points || !_steps.empty())) {
+        if (isAtEnd() && (of == StencilOf::Points || !steps.empty())) {
             break;
         }
         std::vector<CellType::Child> const &children = type->GetChildren();
@@ -308,19 +308,17 @@ void BorderStencil::Find(CellType const &root, double point, StencilOf of) {
             child = point < 0.25 ? 0 : point > 0.75 ? 2 : 1;
             point = child == 0 ? 4 * point : child == 1 ? 2 * point - 0.5 : 4 * (1 - point);
         }
-        _steps.push_back(&children[child].step);
+        steps.push_back(&children[child].step);
         type = children[child].type;
     }
     std::vector<std::vector<double>> const &ends = type->GetCornerPoints();
-    if (isAtEnd()) {
-        _weights = ends[point == 1 && !isVertex ? 1 : 0];
-    } else {
-        _weights.resize(ends[0].size());
-        for (std::size_t i = 0; i < _weights.size(); ++i) {
-            _weights[i] = (1 - point) * ends[0][i] + point * ends[1][i];
-        }
+    std::vector<double> weights = ends[point == 1 && !isVertex ? 1 : 0];
+    for (std::size_t i = 0; !isAtEnd() && i < weights.size(); ++i) {
+        weights[i] = (1 - point) * ends[0][i] + point * ends[1][i];
     }
-    goBack(_steps, of, _weights, _scratch);
+    std::vector<double> scratch;
+    goBack(steps, of, weights, scratch);
+    return weights;
 }
 
 } // namespace OpenSubdivHex::BfrExt::internal

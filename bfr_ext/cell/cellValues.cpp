@@ -7,19 +7,10 @@
 
 namespace OpenSubdivHex::BfrExt::internal {
 
-void CellValues::SetBase(CellType const &root, double const *controlPoints, int length) {
-    _type = &root;
-    _plain = nullptr;
-    setBase(root.GetNumPoints(), controlPoints, length);
-}
-
-void CellValues::SetBase(PlainFaceType const &root, double const *controlPoints, int length) {
-    _type = nullptr;
-    _plain = &root;
-    setBase(root.GetNumPoints(), controlPoints, length);
-}
-
-void CellValues::setBase(int numPoints, double const *controlPoints, int length) {
+void CellValues::SetBase(BaseType const &type, double const *controlPoints, int length) {
+    _plain = type.GetPlain();
+    _type = _plain ? nullptr : &*type;
+    int const numPoints = _plain ? _plain->GetNumPoints() : _type->GetNumPoints();
     _level = 0;
     _length = length;
     _paddedSize = StepMatrix::GetPaddedSize(std::size_t(length));

@@ -178,11 +178,7 @@ void FaceEvaluator<REAL>::evaluateTree(TessellationData const &tessellation, REA
             }
         }
     };
-    if (PlainFaceType const *const plain = _face.type.GetPlain()) {
-        cells.SetBase(*plain, control.data(), _size);
-    } else {
-        cells.SetBase(*_face.type, control.data(), _size);
-    }
+    cells.SetBase(_face.type, control.data(), _size);
     visit(visit, 0, RefinedCells::kBase);
     // Derivatives where the tree has not the cell that they are from.
     for (std::size_t i = 0; results[1] && i < isDone.size(); ++i) {

@@ -97,8 +97,7 @@ CellTree FaceSections::MakeTree(int section, CellShape *shape) const {
         }
         bool const isOther = !hasSection && !isInside;
         if (!isRefined(tree, cell.number, wholeCell) ||
-            (isOther && !(own.isWhole ? cell.Touches(GetFaceShape(), own)
-                                      : own.Touches(GetFaceShape(), cell)))) {
+            (isOther && !own.Touches(GetFaceShape(), cell))) {
             return;
         }
         tree.Refine(cell.number);

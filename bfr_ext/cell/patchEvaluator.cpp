@@ -17,10 +17,8 @@ bool isLarge(CellType const &type, CellPlan::Node const &leaf) {
 template <typename REAL, typename GET>
 PlaceMatrix<REAL> makeDerivatives(RingCell const &cell, GET const &getRow) {
     PlaceMatrix<REAL> matrix(2, cell.GetColumns().size());
-    std::vector<double> ordered;
     for (std::size_t k = 0; k < 2; ++k) {
-        cell.GetPlaces().Order(getRow(k), ordered);
-        matrix.Set(k, ordered);
+        matrix.Set(k, cell.GetPlaces().Order(getRow(k)));
     }
     return matrix;
 }
@@ -65,12 +63,8 @@ PlaceSource<REAL>::MakeMatrices(std::vector<BfrPlace> const &places, bool hasDer
     Matrices result = {{}, hasDerivatives ? std::size_t(2) : std::size_t(1)};
     std::fill_n(result.matrices.begin(), result.count,
                 PlaceMatrix<REAL>(places.size(), numColumns));
-    std::vector<double> ordered;
     auto const set = [&](std::size_t kind, std::size_t row, std::vector<double> const &weights) {
-        if (ringCell) {
-            ringCell->GetPlaces().Order(weights, ordered);
-        }
-        result.matrices[kind].Set(row, ringCell ? ordered : weights);
+        result.matrices[kind].Set(row, ringCell ? ringCell->GetPlaces().Order(weights) : weights);
     };
     std::vector<double> derivative;
     for (std::size_t row = 0; row < places.size(); ++row) {

@@ -7,10 +7,10 @@
 #include "growingPatch.h"
 #include "ringCell.h"
 
-#include <algorithm>
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
+#include <string>
 #include <vector>
 
 namespace OpenSubdivHex::BfrExt::internal {
@@ -21,28 +21,7 @@ namespace OpenSubdivHex::BfrExt::internal {
 ///
 /// A face is *plain* where no feature is near and its patch is a disc, no vertices of which are the
 /// same: so the key tells all of the patch.
-class PlainFaceKey {
-public:
-    /// Vertices at most, all of whose faces are in the patch.
-    static constexpr int kMaxVerts = GrowingPatch::kMaxInner;
-    static constexpr std::size_t kMaxSize = 192;
-
-    void Clear() { _size = 0; }
-    void Add(int number) { _bytes[_size++] = std::uint8_t(number); }
-    /// Whether so many numbers more are too many.
-    bool IsFull(int number) const { return _size + std::size_t(number) > kMaxSize; }
-    void SetFirst(int number) { _bytes[0] = std::uint8_t(number); }
-    /// Leaves so many numbers.
-    void Truncate(std::size_t size) { _size = size; }
-
-    std::uint8_t const *begin() const { return _bytes; }
-    std::uint8_t const *end() const { return _bytes + _size; }
-    std::size_t GetHash() const;
-
-private:
-    std::size_t _size = 0;
-    std::uint8_t _bytes[kMaxSize] = {};
-};
+using PlainFaceKey = std::string;
 
 /// \brief All plain base faces of a key.  Their CellType is made when it is first asked for: a face whose
 /// surface is made but not evaluated needs none.
@@ -60,11 +39,9 @@ public:
 
     std::size_t const hash; ///< of the key
 
-    bool HasKey(PlainFaceKey const &key) const {
-        return std::equal(key.begin(), key.end(), _key.begin(), _key.end());
-    }
+    bool HasKey(PlainFaceKey const &key) const { return key == _key; }
     /// Without what is made on demand.
-    std::size_t GetHeapSize() const { return GetHeapSizes(_key, _runs); }
+    std::size_t GetHeapSize() const { return _key.capacity() + GetHeapSizes(_runs); }
     int GetNumPoints() const { return _numPoints; }
     /// The points behind the vertices whose faces are all there.
     std::vector<Run> const &GetRuns() const { return _runs; }
@@ -88,11 +65,12 @@ private:
     CellType const &make() const;
     FaceRings const &makeRings() const;
     FarExt::internal::CellPatch makeCell() const;
-    CellType::BorderItem makeLatticeItem(FarExt::internal::CellPatch const &cell, int const *turns,
+    CellType::BorderItem makeLatticeItem(FarExt::internal::CellPatch const &cell,
+                                         PatchCorners const &corners, int const *turns,
                                          std::size_t item) const;
 
     PlainFaceTypes &_types;
-    std::vector<std::uint8_t> const _key;
+    PlainFaceKey const _key;
     int const _numVerts;
     std::vector<Run> const _runs;
     int const _numPoints;
@@ -107,8 +85,9 @@ public:
     PlainFaceTypes(CellTypes &types, RingCells &ringCells) : _types(types), _ringCells(ringCells) {}
 
     /// Null where there is none.
-    PlainFaceType const *Find(PlainFaceKey const &key, std::size_t hash) const {
-        return _entries.Find(hash, [&](PlainFaceType const &type) { return type.HasKey(key); });
+    PlainFaceType const *Find(PlainFaceKey const &key) const {
+        return _entries.Find(std::hash<PlainFaceKey>()(key),
+                             [&](PlainFaceType const &type) { return type.HasKey(key); });
     }
     PlainFaceType const &Add(PlainFaceKey const &key, int numVerts, GrowingPatch const &patch);
     /// How many have no CellType yet.
@@ -166,12 +145,13 @@ private:
     bool writePoints(PlainFaceType const &type, Index *points);
     void writeTurns(FarExt::internal::Level const &level, Index face, Index *turns) const;
 
+    static constexpr int kMaxVerts = GrowingPatch::kMaxInner; // all of whose faces are in the patch
     static constexpr std::size_t kNumStamps = 4096;
 
     FaceWalk::Arrays const *_arrays = nullptr; // of the level
     int _faceSize = 0;
     int _numVerts = 0;
-    Vertex _verts[PlainFaceKey::kMaxVerts] = {};
+    Vertex _verts[kMaxVerts] = {};
     PlainFaceKey _key;
     GrowingPatch _patch;
     // By the last digits of points: the number of the search in which there was one.

@@ -19,8 +19,7 @@ public:
     /// The base face.
     static constexpr std::size_t kBase = 0;
     /// Drops all cells, and makes that of a base face, as CellValues::SetBase().
-    template <typename TYPE>
-    void SetBase(TYPE const &type, double const *controlPoints, int length) {
+    void SetBase(BaseType const &type, double const *controlPoints, int length) {
         _size = 0;
         add(1);
         _cells[kBase].values.SetBase(type, controlPoints, length);

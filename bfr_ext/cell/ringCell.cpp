@@ -121,19 +121,19 @@ RingPlaces::RingPlaces(std::vector<Far::Index> const &verts, std::vector<RingLay
     }
 }
 
-void RingPlaces::Order(std::vector<double> const &weights, std::vector<double> &result) const {
-    result.resize(_columns.size());
+std::vector<double> RingPlaces::Order(std::vector<double> const &weights) const {
+    std::vector<double> result(_columns.size());
     for (std::size_t column = 0; column < _columns.size(); ++column) {
         result[column] = weights[std::size_t(_columns[column])];
     }
+    return result;
 }
 
 template <typename REAL>
 std::vector<REAL> const &RingCell::GetVertexWeights() const {
     return _patterns.Get<std::vector<REAL>>(
         PatternTable::GetKind<REAL>(PatternOf::VertexWeights), nullptr, nullptr, [&] {
-            std::vector<double> weights;
-            GetPlaces().Order(_type.GetCornerPoints()[0], weights);
+            std::vector<double> const weights = GetPlaces().Order(_type.GetCornerPoints()[0]);
             return std::vector<REAL>(weights.begin(), weights.end());
         });
 }

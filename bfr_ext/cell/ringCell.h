@@ -40,7 +40,7 @@ public:
         }
     }
     /// Weights by column from those by vertex.
-    void Order(std::vector<double> const &weights, std::vector<double> &result) const;
+    std::vector<double> Order(std::vector<double> const &weights) const;
     /// Appends all that tells them from others.
     void AddKey(std::vector<int> &key) const;
 
