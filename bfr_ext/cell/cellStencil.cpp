@@ -136,12 +136,7 @@ void CellStencil::Place::AddDerivatives(std::size_t corner, double weight,
     Pair ofCorner[2] = {toCoords[0], toCoords[1]};
     if (type->IsWhole()) {
         // The corner has the coordinates of its own sector, larger by what the steps have made them.
-        BasePoint const point =
-            MakeBasePoint(type->GetShape(), type->GetShape().GetSectorOfCorner(int(corner)), {});
-        for (std::size_t i = 0; i < 2; ++i) {
-            ofCorner[i] = {std::ldexp(point.toCoords[i][0], depth),
-                           std::ldexp(point.toCoords[i][1], depth)};
-        }
+        std::copy_n(MakeCornerPoint(type->GetShape(), int(corner), depth).toCoords, 2, ofCorner);
     }
     for (std::size_t k = 0; k < 2; ++k) {
         add(byUv[k], weight * ofCorner[0][k], derivatives[0]);
@@ -163,18 +158,9 @@ CellStencil::Place CellStencil::begin(BasePoint const &point) {
 // To the child that has the point.
 void CellStencil::takeStep(Place &place) {
     CellStep const step = FindCellStep(place.type->GetShape(), place.sector, place.coords);
-    CellMap const *const map = step.map;
     CellType::Child const &next = place.type->GetChildren()[step.child];
     place.coords = step.Apply(place.coords);
-    Pair toCoords[2];
-    for (std::size_t i = 0; i < 2; ++i) {
-        for (std::size_t k = 0; k < 2; ++k) {
-            toCoords[i][k] =
-                map->rows[i][0] * place.toCoords[0][k] + map->rows[i][1] * place.toCoords[1][k];
-        }
-    }
-    place.toCoords[0] = toCoords[0];
-    place.toCoords[1] = toCoords[1];
+    Multiply(step.map->rows, place.toCoords, place.toCoords);
     place.type = next.type;
     ++place.depth;
     _steps.push_back(&next.step);

@@ -12,12 +12,6 @@ void GrowingPatch::Start(int size) {
         _inner[vert] = vert;
     }
     _size = _numInner = _numMade = size;
-    _keepsFaces = false;
-    _numFaceBytes = 0;
-}
-
-void GrowingPatch::KeepFaces() {
-    _keepsFaces = true;
     _faces[0] = std::uint8_t(_size);
     std::iota(_faces + 1, _faces + 1 + _size, std::uint8_t(0));
     _numFaceBytes = 1 + _size;
@@ -56,9 +50,7 @@ bool GrowingPatch::Add(int inner, int numFaces, std::uint8_t const *sizes) {
             }
             last = _numMade - 1;
         }
-        if (_keepsFaces) {
-            keepFace(vert, first, firstMade, isLast ? behind : kNone);
-        }
+        keepFace(vert, first, firstMade, isLast ? behind : kNone);
         if (!isLast && hasInnerNeighbors && !addInner(last, _verts[last].numFaces)) {
             return false;
         }

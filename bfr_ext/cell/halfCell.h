@@ -16,6 +16,14 @@ namespace OpenSubdivHex::BfrExt::internal {
 /// Two coordinates in a cell, or derivatives of these.
 using Pair = std::array<double, 2>;
 
+/// Writes the product of two matrices, which may be one of them.
+inline void Multiply(Pair const (&a)[2], Pair const (&b)[2], Pair (&result)[2]) {
+    Pair const rows[2] = {
+        {a[0][0] * b[0][0] + a[0][1] * b[1][0], a[0][0] * b[0][1] + a[0][1] * b[1][1]},
+        {a[1][0] * b[0][0] + a[1][1] * b[1][0], a[1][0] * b[0][1] + a[1][1] * b[1][1]}};
+    std::copy_n(rows, 2, result);
+}
+
 /// \brief Map of coordinates in one cell to those in another: linear, and a shift.
 struct CellMap {
     Pair Apply(Pair const &p) const {
@@ -43,12 +51,7 @@ inline constexpr CellMap kToFFace = {{{2, 0}, {0, 2}}, {0, 0}};
 /// first, then second.
 inline CellMap Concatenate(CellMap const &first, CellMap const &second) {
     CellMap result;
-    for (std::size_t i = 0; i < 2; ++i) {
-        for (std::size_t k = 0; k < 2; ++k) {
-            result.rows[i][k] =
-                second.rows[i][0] * first.rows[0][k] + second.rows[i][1] * first.rows[1][k];
-        }
-    }
+    Multiply(second.rows, first.rows, result.rows);
     result.shift = second.Apply(first.shift);
     return result;
 }

@@ -92,7 +92,6 @@ CellType const &PlainFaceType::make() const {
 CellPatch PlainFaceType::makeCell() const {
     static thread_local GrowingPatch patch;
     patch.Start(std::uint8_t(_key[0]) & ~kHasSizes);
-    patch.KeepFaces();
     grow(_key, _numVerts, patch);
     std::vector<int> faceSizes;
     std::vector<Far::Index> faceVerts;

@@ -156,14 +156,14 @@ std::unique_ptr<RingCell const> RingCells::make(CellPatch const &cell,
     RingPlaces points(cell.patch.sources, rings);
     if (!_masks.AreUsed()) {
         CellType const &type = _types.Find(cell, GetRules());
-        return std::make_unique<RingCell const>(type, RingStep::First, std::move(points));
+        return std::make_unique<RingCell const>(type, std::move(points));
     }
     CellRefinement refinement = refine(cell, GetRules());
     std::vector<RingLayout> const inner = FindInnerLayouts(cell.patch, rings);
     if (cell.kind == CellKind::Vertex) {
-        points = RingPlaces(refinement.children[0].patch.sources, inner);
-        CellType const &type = _types.Find(refinement.children[0], GetRules());
-        return std::make_unique<RingCell const>(type, RingStep::Second, std::move(points));
+        CellPatch const &child = refinement.children[0];
+        return std::make_unique<RingCell const>(_types.Find(child, GetRules()),
+                                                RingPlaces(child.patch.sources, inner));
     }
     RingPlaces ofStep(findStepVertices(refinement), inner);
     CellType const &type = _types.Find(cell, GetRules());
