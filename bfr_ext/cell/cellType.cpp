@@ -109,23 +109,22 @@ CellType::CellType(CellTypes &types, CellPatch const &cell, std::string packed,
       _isInLattice(isInLattice(cell.patch)), _isSharp(isSharp(cell.patch)), _rules(rules),
       _patterns(types.GetMemory()) {}
 
-std::vector<CellType::Child> const &CellType::GetChildren() const {
-    std::call_once(_onceChildren, [&] {
-        CellRefinement refinement = RefineCell(MakeCell(), _rules.sdcOptions,
-                                               _rules.hexSchemeOptions, _rules.interpolation);
-        std::vector<Child> children;
-        children.reserve(refinement.children.size());
-        for (std::size_t i = 0; i < refinement.children.size(); ++i) {
-            children.push_back({&_types.Find(refinement.children[i], _rules),
-                                ChildStep(_step, refinement.rows[i])});
-        }
-        if (!children.empty()) {
-            _step = StepMatrix(refinement.step);
-        }
-        _children = std::move(children);
-        GetMemory().Add(GetHeapSizes(_children, _step));
-    });
-    return _children;
+void CellType::makeChildren(CellRefinement const *known) const {
+    CellRefinement const own = known ? CellRefinement()
+                                     : RefineCell(MakeCell(), _rules.sdcOptions,
+                                                  _rules.hexSchemeOptions, _rules.interpolation);
+    CellRefinement const &refinement = known ? *known : own;
+    std::vector<Child> children;
+    children.reserve(refinement.children.size());
+    for (std::size_t i = 0; i < refinement.children.size(); ++i) {
+        children.push_back(
+            {&_types.Find(refinement.children[i], _rules), ChildStep(_step, refinement.rows[i])});
+    }
+    if (!children.empty()) {
+        _step = StepMatrix(refinement.step);
+    }
+    _children = std::move(children);
+    GetMemory().Add(GetHeapSizes(_children, _step));
 }
 
 bool CellType::IsRegular() const {

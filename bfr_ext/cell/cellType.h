@@ -102,7 +102,14 @@ public:
     }
 
     /// Children are in the order of RefineCell().
-    std::vector<Child> const &GetChildren() const;
+    std::vector<Child> const &GetChildren() const {
+        std::call_once(_onceChildren, [&] { makeChildren(nullptr); });
+        return _children;
+    }
+    /// Makes the children, if they are not made, of what RefineCell() makes of the cell.
+    void MakeChildren(FarExt::internal::CellRefinement const &refinement) const {
+        std::call_once(_onceChildren, [&] { makeChildren(&refinement); });
+    }
     /// The points that the children have, in terms of those of the type.
     StepMatrix const &GetStep() const {
         GetChildren();
@@ -173,6 +180,7 @@ public:
     MemoryCount &GetMemory() const;
 
 private:
+    void makeChildren(FarExt::internal::CellRefinement const *known) const;
     void findDifferences(int corner, int numSteps, std::vector<double> (&result)[2]) const;
     Derivatives findEarlierDerivatives(int corner) const;
     std::optional<FarExt::internal::LimitMask::Tangents> findTangents(int corner) const;

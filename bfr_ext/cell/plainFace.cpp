@@ -157,7 +157,8 @@ CellType::BorderItem PlainFaceType::makeLatticeItem(CellPatch const &cell,
     CellRules const &rules = _types._ringCells.GetRules();
     CellType const &type = _types._ringCells.FindLatticeItem(
         isEdge ? CellKind::Edge : CellKind::Vertex, cell.GetNumCorners(), [&] {
-            return &_types._types.Find(GatherBorder(cell, turns, rules.sdcOptions)[item], rules);
+            return &_types._types.Find(GatherBorder(cell, turns, rules.sdcOptions, int(item))[item],
+                                       rules);
         });
     // The corner of the face, or of another one, that is the first of the item.
     auto corner = int(isEdge ? item : item - numEdges);
