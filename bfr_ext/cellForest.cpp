@@ -16,7 +16,7 @@ using FarExt::internal::Level;
 struct CellForest::Data {
     // No face is refined.
     explicit Data(FarExt::SurfaceFaces const &ofMesh)
-        : faces(ofMesh), isMatched(std::size_t(ofMesh.GetNumFaces())),
+        : faces(ofMesh), isMatched(std::size_t(ofMesh.GetNumFaces()), 1),
           edges(std::size_t(ofMesh.GetNumEdges())), polylines(edges),
           firstPoints(edges.size() + 1, ofMesh.GetLevel().numVertices) {
         trees.reserve(isMatched.size());
@@ -27,7 +27,7 @@ struct CellForest::Data {
 
     FarExt::SurfaceFaces faces;
     std::vector<CellTree> trees;
-    std::vector<char> isMatched;     // by face; where it is not known, too, it is false
+    std::vector<char> isMatched;     // by face
     std::vector<Polyline> edges;     // what was set
     std::vector<Polyline> polylines; // the same with the points of faces
     std::vector<Number> firstPoints; // by edge; then their end
@@ -125,23 +125,7 @@ void CellForest::MatchEdges() {
     }
 }
 
-bool CellForest::IsMatched(Index face) const {
-    if (_data->isMatched[std::size_t(face)]) {
-        return true;
-    }
-    CellTree const &tree = GetTree(face);
-    if (tree.GetFaceShape() != _data->faces.GetShape(face)) {
-        return false;
-    }
-    for (int local = 0; local < tree.GetFaceSize(); ++local) {
-        Polyline const own = tree.GetEdgePolyline(local);
-        auto const [edge, isReversed] = _data->faces.GetEdge(face, local);
-        if (!GetPolyline(edge).Contains(isReversed ? own.GetReversed() : own)) {
-            return false;
-        }
-    }
-    return true;
-}
+bool CellForest::IsMatched(Index face) const { return _data->isMatched[std::size_t(face)] != 0; }
 
 std::vector<Polyline> CellForest::GetFacePolylines(Index face) const {
     std::vector<Polyline> edges;

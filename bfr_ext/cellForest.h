@@ -70,8 +70,7 @@ public:
     ///
     /// Call it after SetTree() and SetEdge().  A tree for another number of vertices than its face has is ignored.
     void MatchEdges();
-    /// \brief Whether the face has a tessellation: its tree is for as many vertices, and the polylines of its edges have all
-    /// points of the tree.  It is true after MatchEdges().
+    /// Whether the tree of the face was there when MatchEdges() was called last, and is for as many vertices.
     bool IsMatched(Index face) const;
     /// The polyline of an edge, in the direction of the edge.
     Polyline const &GetPolyline(Index edge) const;

@@ -48,9 +48,9 @@ Parameterization LevelTessellation::GetParameterization() const { return _data->
 int LevelTessellation::GetFaceSize() const { return _data->GetFaceSize(); }
 FarExt::FaceShape LevelTessellation::GetFaceShape() const { return _data->GetFaceShape(); }
 
-int LevelTessellation::GetNumSections() const { return _data->section ? _data->section->count : 1; }
+int LevelTessellation::GetNumSections() const { return _data->numSections; }
 
-int LevelTessellation::GetSection() const { return _data->section ? _data->section->number : 0; }
+int LevelTessellation::GetSection() const { return _data->section; }
 
 int LevelTessellation::GetNumEdges() const {
     return std::max(int(_data->firstEdgeCoords.size()) - 1, 0);
@@ -93,8 +93,8 @@ template int LevelTessellation::writeCoords(int, int, double[]) const;
 template <typename REAL>
 int LevelTessellation::GetPlaneCoords(REAL coordTuples[]) const {
     FarExt::internal::BasePolygon const polygon(_data->GetFaceShape());
-    for (TessellationData::SectorCoords const &place : _data->places) {
-        polygon.Write(place.sector, {place.start, place.end}, coordTuples);
+    for (auto const &[sector, inSector] : _data->places) {
+        polygon.Write(sector, {inSector[0], inSector[1]}, coordTuples);
         coordTuples += _data->coordStride;
     }
     return GetNumCoords();

@@ -6,7 +6,6 @@
 
 #include "far_ext/executor.h"
 #include "far_ext/stencil/interpolationMode.h"
-#include "far_ext/vtr/hash.h"
 #include "far_ext/vtr/parallel.h"
 #include "far_ext/vtr/report.h"
 
@@ -15,7 +14,7 @@
 #include <map>
 #include <mutex>
 #include <string>
-#include <unordered_set>
+#include <tuple>
 
 namespace OpenSubdivHex::BfrExt {
 
@@ -53,13 +52,20 @@ public:
     using Index = Far::Index;
     using Options = PatchTessellations::Options;
 
+    /// A patch that a call makes.
+    struct PatchOfFace {
+        std::size_t plan; ///< equal ones have the same
+        int section;      ///< -1: the face as a whole
+        Index face;
+    };
+
     StreamData(SurfaceFactory const &ofMesh, PatchLevels ofFaces, CellForest const *ofTrees,
                Options const &ofStream)
         : factory(ofMesh), levels(std::move(ofFaces)), forest(ofTrees), options(ofStream),
-          plans(options.GetTessellationOptions(), options.HasDerivatives(),
-                options.GetMaxMemory()) {}
+          plans(options.HasDerivatives(), options.GetMaxMemory()) {}
 
     void GetLevels(Index face, FaceLevels &result) const;
+    bool GetKey(Index face, std::vector<int> &key) const;
     LevelTessellation MakeWhole(Index face) const;
     std::unique_ptr<FaceSections const> MakeSections(Index face) const;
     template <typename MAKE>
@@ -72,30 +78,42 @@ public:
     PatchPlans mutable plans;
 
 private:
-    struct Batch;
-
-    CallStatus checkFaces(AskedFaces const &faces, bool &arePlansKept) const;
+    CallStatus checkFaces(AskedFaces const &faces) const;
     CallStatus checkFace(Index face, FaceLevels &ofFace) const;
-    Index takeFaces(AskedFaces const &faces, Index next, Batch &batch) const;
-    template <typename MAKE>
-    bool runWorkers(AskedFaces const &faces, bool arePlansKept, MAKE const &makeWorker,
-                    CallStatus &status) const;
+    Index takeFaces(AskedFaces const &faces, Index next, std::vector<PatchOfFace> &patches) const;
 };
 
 namespace internal {
 
-// Writes the levels of the edges, then that of the inside; none of a forest.
+// Writes the levels of the edges, then that of the inside.
 void StreamData::GetLevels(Index face, FaceLevels &result) const {
-    result.levels.clear();
-    if (forest) {
-        return;
-    }
     FarExt::SurfaceFaces const &faces = factory.GetFaces();
     result.shape = faces.GetShape(face);
+    result.levels.clear();
     for (int local = 0; local < result.shape.size; ++local) {
         result.levels.push_back(levels.GetEdgeLevel(faces.GetEdge(face, local).edge));
     }
     result.levels.push_back(levels.GetFaceLevel(face));
+}
+
+// Writes numbers that tell the tessellation of a face, and returns whether others are likely to have the same.
+bool StreamData::GetKey(Index face, std::vector<int> &key) const {
+    constexpr int kMaxCellsOfShared = 128;
+    if (forest && forest->GetTree(face).GetNumCells() > kMaxCellsOfShared) {
+        key = {face};
+        return false;
+    }
+    if (forest) {
+        forest->GetTessellationKey(face, key);
+        return true;
+    }
+    FarExt::SurfaceFaces const &faces = factory.GetFaces();
+    FarExt::FaceShape const shape = faces.GetShape(face);
+    key = {shape.isHalf ? 1 : 0, levels.GetFaceLevel(face)};
+    for (int local = 0; local < shape.size; ++local) {
+        key.push_back(levels.GetEdgeLevel(faces.GetEdge(face, local).edge));
+    }
+    return true;
 }
 
 LevelTessellation StreamData::MakeWhole(Index face) const {
@@ -122,110 +140,60 @@ std::unique_ptr<FaceSections const> StreamData::MakeSections(Index face) const {
     return plans.IsCut(ofFace) ? std::make_unique<FaceSections const>(ofFace, maxLeaves) : nullptr;
 }
 
-/// \brief Some faces that are no holes, and what patches they have: those of faces in sections stand section
-/// by section, so that faces with the same levels have each of them side by side.
-struct StreamData::Batch {
-    /// Faces that follow one another, whole or with the same sections.
-    struct Group {
-        std::size_t firstFace;
-        std::size_t numFaces;
-        int numSections; ///< 0: whole
-        Index firstPatch;
+// Takes the patches of faces from number next on that are no holes.  Where not all of their plans fit in memory, those
+// with the same plan stand side by side.
+Far::Index StreamData::takeFaces(AskedFaces const &faces, Index next,
+                                 std::vector<PatchOfFace> &patches) const {
+    constexpr std::size_t kMinNumPatches = 1024;
+    constexpr std::size_t kBytesOfPatch = 256; // with its key
+    struct KnownPlan {
+        std::size_t number;
+        int numSections; // 0: whole
     };
-    struct PatchOfFace {
-        Index face;
-        int section; ///< -1: whole
-    };
-
-    void Add(Index face, int numSections, bool isOfLastGroup) {
-        if (!isOfLastGroup) {
-            groups.push_back({faces.size(), 0, numSections, numPatches});
-        }
-        faces.push_back(face);
-        ++groups.back().numFaces;
-        numPatches += std::max(numSections, 1);
-    }
-
-    PatchOfFace Get(Index patch) const {
-        auto const group = std::upper_bound(groups.begin(), groups.end(), patch,
-                                            [](Index number, Group const &other) {
-                                                return number < other.firstPatch;
-                                            }) -
-                           1;
-        auto const place = std::size_t(patch - group->firstPatch);
-        return {faces[group->firstFace + place % group->numFaces],
-                group->numSections == 0 ? -1 : int(place / group->numFaces)};
-    }
-
-    std::vector<Index> faces;
-    std::vector<Group> groups;
-    Index numPatches = 0;
-};
-
-// Takes faces from number next on that are no holes, of a stream whose plans do not all fit in memory; where not all
-// of theirs do, faces with the same levels stand side by side.
-Far::Index StreamData::takeFaces(AskedFaces const &faces, Index next, Batch &batch) const {
-    constexpr std::size_t kMinNumFaces = 1024;
-    constexpr std::size_t kShareOfMemory = 16;
-    constexpr double kMaxLeaves = 1 << 30;
-    struct LevelsOfFace {
-        std::size_t hash;
-        Index face;
-    };
-    std::size_t const numFaces =
-        std::max(kMinNumFaces, options.GetMaxMemory() / kShareOfMemory / sizeof(LevelsOfFace));
-    std::vector<LevelsOfFace> order;
+    std::size_t const maxNumPatches =
+        std::max(kMinNumPatches, options.GetMaxMemory() / kBytesOfPatch);
+    std::map<std::vector<int>, KnownPlan> known;
+    std::vector<int> key;
+    std::vector<int> lastKey;
+    KnownPlan plan = {};
     FaceLevels ofFace;
-    std::unordered_set<std::size_t> hashes;
     std::size_t memory = 0;
-    double numLeaves = 0; // at least as many as patches
-    for (; next < faces.GetCount() && order.size() < numFaces && numLeaves < kMaxLeaves; ++next) {
+    patches.clear();
+    for (; next < faces.GetCount() && patches.size() < maxNumPatches; ++next) {
         Index const face = faces[next];
         if (factory.GetFaces().IsHole(face)) {
             continue;
         }
+        auto const countSections = [&] {
+            std::unique_ptr<FaceSections const> const sections = MakeSections(face);
+            return sections ? sections->GetNumSections() : 0;
+        };
         if (forest) {
-            order.push_back({0, face});
-            numLeaves += forest->GetTree(face).GetNumLeaves();
-            continue;
+            plan = {0, countSections()};
+        } else if (GetKey(face, key); key != lastKey) {
+            lastKey = key;
+            auto const [place, isNew] = known.emplace(key, KnownPlan{known.size(), 0});
+            if (isNew) {
+                GetLevels(face, ofFace);
+                memory += plans.GetSizeOfMaking(ofFace);
+                place->second.numSections = countSections();
+            }
+            plan = place->second;
         }
-        GetLevels(face, ofFace);
-        numLeaves += FaceSections::CountLeaves(ofFace.shape, ofFace.levels.back());
-        std::size_t hash = ofFace.shape.isHalf ? 1 : 0;
-        for (int const level : ofFace.levels) {
-            hash = FarExt::internal::AddToHash(hash, 1 + std::uint64_t(level));
-        }
-        order.push_back({hash, face});
-        if (memory <= plans.GetMaxMemory() && hashes.insert(hash).second) {
-            memory += plans.GetSizeOfMaking(ofFace);
+        for (int section = plan.numSections > 0 ? 0 : -1; section < plan.numSections; ++section) {
+            patches.push_back({plan.number, section, face});
         }
     }
     if (memory > plans.GetMaxMemory()) {
-        std::sort(order.begin(), order.end(), [](LevelsOfFace const &a, LevelsOfFace const &b) {
-            return a.hash != b.hash ? a.hash < b.hash : a.face < b.face;
+        std::sort(patches.begin(), patches.end(), [](PatchOfFace const &a, PatchOfFace const &b) {
+            return std::tie(a.plan, a.section, a.face) < std::tie(b.plan, b.section, b.face);
         });
-    }
-    batch = {};
-    FaceLevels lastLevels;
-    bool isLastCut = false;
-    int numSections = 0;
-    for (LevelsOfFace const &levelsOfFace : order) {
-        GetLevels(levelsOfFace.face, ofFace);
-        bool isOfLastGroup = !forest && !batch.groups.empty() && ofFace == lastLevels;
-        if (!isOfLastGroup) {
-            std::unique_ptr<FaceSections const> const sections = MakeSections(levelsOfFace.face);
-            isOfLastGroup = !batch.groups.empty() && !sections && !isLastCut;
-            numSections = sections ? sections->GetNumSections() : 0;
-            isLastCut = sections != nullptr;
-            lastLevels = ofFace;
-        }
-        batch.Add(levelsOfFace.face, numSections, isOfLastGroup);
     }
     return next;
 }
 
 // The status names the first wrong face, whichever thread finds it.
-CallStatus StreamData::checkFaces(AskedFaces const &faces, bool &arePlansKept) const {
+CallStatus StreamData::checkFaces(AskedFaces const &faces) const {
     FarExt::SurfaceFaces const &base = factory.GetFaces();
     constexpr int kTriangle = 3;
     if (!LevelTessellation(Parameterization(kTriangle), 0, options.GetTessellationOptions())
@@ -245,77 +213,31 @@ CallStatus StreamData::checkFaces(AskedFaces const &faces, bool &arePlansKept) c
         return FarExt::internal::Failure(StatusCode::InvalidArgument,
                                          "the forest is that of another refiner");
     }
-    // Threads have sizes of plans by key, which come together when they end.
-    using Sizes = std::map<std::vector<int>, std::size_t>;
     std::mutex mutex;
-    Sizes sizes;
-    struct Checker {
-        ~Checker() {
-            std::lock_guard<std::mutex> const lock(mutexOfAll);
-            ofAll.merge(own);
-        }
-
-        std::mutex &mutexOfAll;
-        Sizes &ofAll;
-        Sizes own = {};
-        std::size_t memory = 0;
-        FaceLevels ofFace = {};
-        FaceLevels last = {};
-    };
-    std::atomic<bool> hasRoom(true);
     std::atomic<Index> firstBad(faces.GetCount());
     CallStatus result;
-    // Whether the plans of a thread have room, with that of the face.
-    auto const haveRoom = [&](Checker &checker, Index face) {
-        if (forest) {
-            return !plans.IsCut(forest->GetTree(face));
-        }
-        if (checker.ofFace != checker.last) {
-            checker.last = checker.ofFace;
-            auto const [size, isNew] = checker.own.emplace(checker.ofFace.GetKey(), 0);
-            if (isNew) {
-                size->second = plans.GetSizeOfMaking(checker.ofFace);
-                checker.memory += size->second;
-                return checker.memory <= plans.GetMaxMemory() && !plans.IsCut(checker.ofFace);
-            }
-        }
-        return true;
-    };
-    auto const check = [&](Checker &checker, Index begin, Index end) {
-        for (Index i = begin; i < end && i < firstBad; ++i) {
-            Index const face = faces[i];
-            if (base.IsHole(face)) {
-                continue;
-            }
-            CallStatus status = checkFace(face, checker.ofFace);
-            if (!status.IsOk()) {
-                std::lock_guard<std::mutex> const lock(mutex);
-                if (i < firstBad) {
-                    firstBad = i;
-                    result = std::move(status);
-                }
-                return;
-            }
-            if (hasRoom && !haveRoom(checker, face)) {
-                hasRoom = false;
-            }
-        }
-    };
     FarExt::internal::ParallelForRange(
-        faces.GetCount(),
-        [&] {
-            return Checker{mutex, sizes};
+        faces.GetCount(), [] { return FaceLevels(); },
+        [&](FaceLevels &ofFace, Index begin, Index end) {
+            for (Index i = begin; i < end && i < firstBad; ++i) {
+                if (base.IsHole(faces[i])) {
+                    continue;
+                }
+                CallStatus status = checkFace(faces[i], ofFace);
+                if (!status.IsOk()) {
+                    std::lock_guard<std::mutex> const lock(mutex);
+                    if (i < firstBad) {
+                        firstBad = i;
+                        result = std::move(status);
+                    }
+                    return;
+                }
+            }
         },
-        check, FarExt::internal::kShortParallelRange);
-    std::size_t memory = 0;
-    for (auto const &[key, size] : sizes) {
-        memory += size;
-    }
-    arePlansKept = hasRoom && memory <= plans.GetMaxMemory();
+        FarExt::internal::kShortParallelRange);
     return result;
 }
 
-// Writes the levels, in a stream of levels.
 CallStatus StreamData::checkFace(Index face, FaceLevels &ofFace) const {
     CallStatus status = factory.CheckFace(face);
     if (!status.IsOk()) {
@@ -350,58 +272,40 @@ CallStatus StreamData::checkFace(Index face, FaceLevels &ofFace) const {
     return refuse(*bad, ComponentType::Edge, "edge", edge);
 }
 
-// Has workers, each of which makeWorker() gives, make the patches of faces; false where one gave false.
+// Checks the faces, and has workers, each of which makeWorker() gives, make their patches; false where one gave false.
 template <typename MAKE>
-bool StreamData::runWorkers(AskedFaces const &faces, bool arePlansKept, MAKE const &makeWorker,
-                            CallStatus &status) const {
+bool StreamData::Run(AskedFaces const &faces, MAKE const &makeWorker, CallStatus *status) const {
+    CallStatus result = checkFaces(faces);
+    if (!FarExt::internal::Report(result, status)) {
+        return false;
+    }
     std::atomic<bool> isEnded(false);
     std::mutex mutex;
-    Index const length = std::min(std::max(faces.GetCount() / kNumRangesWanted, 1), kMaxRange);
-    // Hands out patches getPatch(0) ... getPatch(count - 1), where their faces are no holes.
-    auto const run = [&](Index count, auto const &getPatch) {
-        FarExt::SurfaceFaces const &base = factory.GetFaces();
+    std::vector<PatchOfFace> patches;
+    for (Index next = 0; next < faces.GetCount() && !isEnded;) {
+        next = takeFaces(faces, next, patches);
+        auto const count = Index(patches.size());
         FarExt::internal::ParallelForRange(
             count, makeWorker,
             [&](auto &worker, Index begin, Index end) {
                 CallStatus workerStatus;
                 for (Index i = begin; i < end && !isEnded; ++i) {
-                    Batch::PatchOfFace const patch = getPatch(i);
-                    if (base.IsHole(patch.face) ||
-                        worker.Run(patch.face, patch.section, workerStatus)) {
+                    PatchOfFace const &patch = patches[std::size_t(i)];
+                    if (worker.Run(patch.face, patch.section, workerStatus)) {
                         continue;
                     }
                     isEnded = true;
                     std::lock_guard<std::mutex> const lock(mutex);
-                    if (status.IsOk()) {
-                        status = workerStatus;
+                    if (result.IsOk()) {
+                        result = workerStatus;
                     }
                 }
             },
-            length);
-    };
-    if (arePlansKept) {
-        run(faces.GetCount(), [&](Index i) { return Batch::PatchOfFace{faces[i], -1}; });
-    }
-    Batch batch;
-    for (Index next = 0; !arePlansKept && next < faces.GetCount() && !isEnded;) {
-        next = takeFaces(faces, next, batch);
-        run(batch.numPatches, [&](Index i) { return batch.Get(i); });
+            std::min(std::max(count / kNumRangesWanted, 1), kMaxRange));
     }
     plans.Trim();
-    return !isEnded;
-}
-
-// Checks the faces, and has workers make their patches.
-template <typename MAKE>
-bool StreamData::Run(AskedFaces const &faces, MAKE const &makeWorker, CallStatus *status) const {
-    bool arePlansKept = false;
-    CallStatus result = checkFaces(faces, arePlansKept);
-    if (!FarExt::internal::Report(result, status)) {
-        return false;
-    }
-    bool const isDone = runWorkers(faces, arePlansKept, makeWorker, result);
     FarExt::internal::Report(result, status);
-    return isDone;
+    return !isEnded;
 }
 
 } // namespace internal
@@ -417,62 +321,56 @@ public:
 
     /// \param section  -1: of the face as a whole
     LevelTessellation const &Find(Far::Index face, int section) {
-        if (section >= 0) {
-            findSection(face, section);
-        } else if (_stream.forest) {
-            findTree(face);
+        bool const isShared = _stream.GetKey(face, _key);
+        if (_plan && _planSection == section && _planKey == _key) {
+            return *_plan;
+        }
+        _plan.reset();
+        auto const make = [&] {
+            return section < 0 ? _stream.MakeWhole(face)
+                               : LevelTessellation(findSections(face), section,
+                                                   _stream.options.GetTessellationOptions());
+        };
+        _planKey = _key;
+        _planSection = section;
+        if (isShared) {
+            _key.push_back(section);
+            _plan = _stream.plans.Find(_key, findSize(face, section), make);
         } else {
-            _stream.GetLevels(face, _levels);
-            if (!_plan || _levels != _planLevels) {
-                _plan.reset();
-                _plan = _stream.plans.Find(_levels);
-                _planLevels = _levels;
-            }
+            _plan = std::make_shared<LevelTessellation const>(make());
         }
         return *_plan;
     }
 
 private:
-    void findTree(Far::Index face) {
-        if (!internal::PatchPlans::IsShared(_stream.forest->GetTree(face))) {
-            _plan.reset();
-            _plan = std::make_shared<LevelTessellation const>(_stream.MakeWhole(face));
-            _planKey.clear();
-            return;
+    std::size_t findSize(Far::Index face, int section) {
+        if (section >= 0) {
+            return _stream.plans.GetSizeOfSection();
         }
-        _stream.forest->GetTessellationKey(face, _treeKey);
-        if (_treeKey != _planKey) {
-            _plan.reset();
-            _plan = _stream.plans.Find(_treeKey, [&] { return _stream.MakeWhole(face); });
-            _planKey = _treeKey;
+        if (_stream.forest) {
+            return _stream.plans.GetSizeOfTree(_planKey.size());
         }
+        _stream.GetLevels(face, _levels);
+        return _stream.plans.GetSizeOfMaking(_levels);
     }
 
-    void findSection(Far::Index face, int section) {
-        _plan.reset();
-        _planKey.clear();
-        _planLevels = {};
-        _stream.GetLevels(face, _levels);
-        if (_stream.forest ? _sectionsFace != face
-                           : !_sections || _sections->GetLevels() != _levels.levels ||
-                                 _sections->GetFaceShape() != _levels.shape) {
+    internal::FaceSections const &findSections(Far::Index face) {
+        if (!_sections || _sectionsKey != _planKey) {
             _sections.reset();
             _sections = _stream.MakeSections(face);
-            _sectionsFace = face;
+            _sectionsKey = _planKey;
         }
-        _plan = _stream.forest ? std::make_shared<LevelTessellation const>(
-                                     *_sections, section, _stream.options.GetTessellationOptions())
-                               : _stream.plans.Find(*_sections, section);
+        return *_sections;
     }
 
     StreamData const &_stream;
     internal::FaceLevels _levels;
-    internal::FaceLevels _planLevels;
-    std::vector<int> _treeKey; // what tells a tree
+    std::vector<int> _key;
     std::vector<int> _planKey;
+    int _planSection = -1;
     internal::PatchPlans::Plan _plan;
     std::unique_ptr<internal::FaceSections const> _sections; // of the last face that came in some
-    Far::Index _sectionsFace = Far::INDEX_INVALID;
+    std::vector<int> _sectionsKey;
 };
 
 /// \brief Makes the patches of some faces one by one, and hands them out.

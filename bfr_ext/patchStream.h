@@ -22,19 +22,18 @@ public:
     using Function = std::function<int(Far::Index)>;
 
     /// One level everywhere.
-    explicit PatchLevels(int level) : _isUniform(true), _level(level) {}
+    explicit PatchLevels(int level)
+        : _ofFaces([=](Far::Index) { return level; }), _ofEdges(_ofFaces) {}
     /// A level for each face and one for each edge; as arrays, [&](int face) { return levels[face]; }.
     PatchLevels(Function ofFaces, Function ofEdges)
         : _ofFaces(std::move(ofFaces)), _ofEdges(std::move(ofEdges)) {}
 
     /// The level of the inside of a face.
-    int GetFaceLevel(Far::Index face) const { return _isUniform ? _level : _ofFaces(face); }
+    int GetFaceLevel(Far::Index face) const { return _ofFaces(face); }
     /// The level of an edge.
-    int GetEdgeLevel(Far::Index edge) const { return _isUniform ? _level : _ofEdges(edge); }
+    int GetEdgeLevel(Far::Index edge) const { return _ofEdges(edge); }
 
 private:
-    bool _isUniform = false;
-    int _level = 0;
     Function _ofFaces;
     Function _ofEdges;
 };
@@ -212,14 +211,13 @@ public:
     /// \return  false to end the stream: some patches may still come
     using Sink = std::function<bool(Patch const &)>;
 
-    /// A stream of surfaces for vertex data, with the default options.
+    /// A stream of surfaces for vertex data.
     ///
     /// \param factory  makes the surfaces; it must live as long
     /// \param levels   how fine they are
-    PatchStream(SurfaceFactory const &factory, PatchLevels levels)
-        : PatchStream(factory, std::move(levels), Options()) {}
-    /// Overload with options.
-    PatchStream(SurfaceFactory const &factory, PatchLevels levels, Options const &options)
+    /// \param options  facets and memory
+    PatchStream(SurfaceFactory const &factory, PatchLevels levels,
+                Options const &options = Options())
         : PatchTessellations(factory, std::move(levels), nullptr, options) {}
 
     /// \brief A stream of the cells of trees.
@@ -227,11 +225,9 @@ public:
     /// \param factory  makes the surfaces; it must live as long
     /// \param forest   of the same refiner, after MatchEdges(); it must live as long
     /// \param options  facets and memory
-    PatchStream(SurfaceFactory const &factory, CellForest const &forest, Options const &options)
+    PatchStream(SurfaceFactory const &factory, CellForest const &forest,
+                Options const &options = Options())
         : PatchTessellations(factory, PatchLevels(0), &forest, options) {}
-    /// Overload with default options.
-    PatchStream(SurfaceFactory const &factory, CellForest const &forest)
-        : PatchStream(factory, forest, Options()) {}
     /// Moving copies. Copies share tessellations.
     PatchStream(PatchStream const &) = default;
     /// \copydoc PatchStream(PatchStream const &)

@@ -35,19 +35,6 @@ void copyWeights(std::vector<double> const &from, REAL *to) {
 } // namespace
 
 template <typename REAL>
-Surface<REAL>::Surface() = default;
-template <typename REAL>
-Surface<REAL>::~Surface() = default;
-template <typename REAL>
-Surface<REAL>::Surface(Surface const &other) = default;
-template <typename REAL>
-Surface<REAL> &Surface<REAL>::operator=(Surface const &other) = default;
-template <typename REAL>
-Surface<REAL>::Surface(Surface &&other) noexcept = default;
-template <typename REAL>
-Surface<REAL> &Surface<REAL>::operator=(Surface &&other) noexcept = default;
-
-template <typename REAL>
 BaseFace const &Surface<REAL>::GetFace() const {
     return _keptFace ? *_keptFace : *reinterpret_cast<BaseFace const *>(_ownFace.data());
 }

@@ -93,6 +93,7 @@ private:
 ///    kinks.
 ///  - In all these cases the result is the change of first derivatives over a cell of level 10.
 ///
+/// A surface is invalid until SurfaceFactory initializes it, and after it was moved from; copies share what the cache has.
 /// Several threads may call const functions at once.  A surface may outlive the factory and the cache.  An invalid surface
 /// writes nothing.  Other arguments are not checked; std::bad_alloc passes through.
 template <typename REAL>
@@ -113,18 +114,6 @@ public:
         int size = 0;   ///< numbers of a point
         int stride = 0; ///< from the begin of a point to that of the next
     };
-
-    /// An invalid surface, for SurfaceFactory to initialize.
-    Surface();
-    ~Surface();
-    /// Copies share what the cache has.
-    Surface(Surface const &other);
-    /// \copydoc Surface(Surface const &)
-    Surface &operator=(Surface const &other);
-    /// Makes the other one invalid.
-    Surface(Surface &&other) noexcept;
-    /// \copydoc Surface(Surface &&)
-    Surface &operator=(Surface &&other) noexcept;
 
     /// Whether SurfaceFactory initialized it.
     bool IsValid() const { return _owner != nullptr; }
@@ -230,9 +219,7 @@ public:
     /// face-varying values on the two sides of a seam; last bits on edges and at vertices of the faces around a
     /// non-manifold vertex with a closed fan among others.
     ///
-    /// The weights are found when a type of faces or of cells is first evaluated so, and kept in the
-    /// cache.  Inside of trees of more than 128 cells the control points are refined cell by cell instead,
-    /// in double precision.
+    /// The weights are found when a type of faces or of cells is first evaluated so, and kept in the cache.
     void Evaluate(LevelTessellation const &tessellation, REAL const controlPoints[],
                   PointDescriptor const &pointDesc, REAL p[],
                   PointDescriptor const &resultDesc) const;

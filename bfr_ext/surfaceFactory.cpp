@@ -80,15 +80,10 @@ SurfaceFactory::SurfaceFactory(FarExt::TopologyRefiner const &refiner, Options o
       _cache(getCache(options)) {
     FarExt::internal::Hierarchy const &hierarchy = refiner.GetHierarchy();
     for (int channel = -1; channel < refiner.GetNumFVarChannels(); ++channel) {
-        _walks.push_back(std::make_shared<internal::FaceWalk>(
+        _walks.push_back(std::make_unique<internal::FaceWalk>(
             hierarchy.GetMesh(channel).levels[std::size_t(_level.GetDepth())]));
     }
 }
-
-SurfaceFactory::SurfaceFactory(SurfaceFactory const &other, Options options)
-    : _refiner(other._refiner), _level(other._level), _faces(other._faces),
-      _numRefinements(other._numRefinements), _options(options), _cache(getCache(options)),
-      _walks(other._walks) {}
 
 // Some types of the cache, with the faces that are kept of them.  Surfaces own it.
 struct SurfaceFactory::Types {
@@ -122,10 +117,6 @@ auto SurfaceFactory::getTypes() const -> std::shared_ptr<Types const> {
 }
 
 SurfaceFactory::~SurfaceFactory() = default;
-
-std::unique_ptr<SurfaceFactory> SurfaceFactory::CreateWith(Options options) const {
-    return std::unique_ptr<SurfaceFactory>(new SurfaceFactory(*this, options));
-}
 
 int SurfaceFactory::getPatchLevel(internal::BaseType const &type) const {
     int const level =

@@ -166,10 +166,6 @@ public:
                                                   FarExt::CallStatus *status = nullptr) {
         return Create(refiner, Options(), status);
     }
-    /// \brief One of the same mesh with other options, which need not look at the mesh again.
-    ///
-    /// Its refiner must live as long; this factory need not.
-    std::unique_ptr<SurfaceFactory> CreateWith(Options options) const;
     ~SurfaceFactory();
 
     SurfaceFactory(SurfaceFactory const &) = delete;
@@ -313,7 +309,6 @@ private:
     struct Types;
 
     SurfaceFactory(FarExt::TopologyRefiner const &refiner, Options options);
-    SurfaceFactory(SurfaceFactory const &other, Options options);
 
     std::shared_ptr<Types const> getTypes() const;
     int getPatchLevel(internal::BaseType const &type) const;
@@ -340,7 +335,7 @@ private:
     int const _numRefinements; // of the refiner, when the factory was made
     Options const _options;
     std::shared_ptr<internal::TypeCache> const _cache;
-    std::vector<std::shared_ptr<internal::FaceWalk>> _walks; // of the mesh, and of each channel
+    std::vector<std::unique_ptr<internal::FaceWalk>> _walks; // of the mesh, and of each channel
     mutable std::mutex _mutex;
     mutable std::shared_ptr<Types const> _types; // of which surfaces are made; null: nobody asked
     mutable std::atomic<void const *> _currentTypes{nullptr}; // the same, to compare with

@@ -71,11 +71,10 @@ SurfacePlaces<REAL>::Create(SurfaceFactory const &factory, int numPlaces, Index 
     return places;
 }
 
-// Calls function(surface, patch points, number, uv) for all places.
 template <typename REAL>
-template <typename FUNCTION>
-void SurfacePlaces<REAL>::forEachPlace(REAL const *meshPoints, PointDescriptor const &meshPointDesc,
-                                       FUNCTION const &function) const {
+void SurfacePlaces<REAL>::Evaluate(REAL const meshPoints[], PointDescriptor const &meshPointDesc,
+                                   REAL p[], REAL du[], REAL dv[],
+                                   PointDescriptor const &resultDesc) const {
     constexpr Index kRange = 4; // faces whose patch points take some microseconds each
     PointDescriptor const desc(meshPointDesc.size);
     FarExt::internal::ParallelForRange(
@@ -85,37 +84,20 @@ void SurfacePlaces<REAL>::forEachPlace(REAL const *meshPoints, PointDescriptor c
                 Surface<REAL> const &surface = _surfaces[face];
                 points.resize(std::size_t(surface.GetNumPatchPoints()) * std::size_t(desc.size));
                 surface.PreparePatchPoints(meshPoints, meshPointDesc, points.data(), desc);
-                for (Index i = _firstPlaces[face]; i < _firstPlaces[face + 1]; ++i) {
-                    function(surface, points.data(), std::ptrdiff_t(_numbers[std::size_t(i)]),
-                             &_uvs[2 * std::size_t(i)]);
+                for (auto i = std::size_t(_firstPlaces[face]);
+                     i < std::size_t(_firstPlaces[face + 1]); ++i) {
+                    REAL const *const uv = &_uvs[2 * i];
+                    std::ptrdiff_t const result = std::ptrdiff_t(_numbers[i]) * resultDesc.stride;
+                    if (du) {
+                        surface.Evaluate(uv, points.data(), desc, p + result, du + result,
+                                         dv + result);
+                    } else {
+                        surface.Evaluate(uv, points.data(), desc, p + result);
+                    }
                 }
             }
         },
         kRange);
-}
-
-template <typename REAL>
-void SurfacePlaces<REAL>::Evaluate(REAL const meshPoints[], PointDescriptor const &meshPointDesc,
-                                   REAL p[], PointDescriptor const &resultDesc) const {
-    PointDescriptor const desc(meshPointDesc.size);
-    forEachPlace(meshPoints, meshPointDesc,
-                 [&](Surface<REAL> const &surface, REAL const *points, std::ptrdiff_t number,
-                     REAL const *uv) {
-                     surface.Evaluate(uv, points, desc, p + number * resultDesc.stride);
-                 });
-}
-
-template <typename REAL>
-void SurfacePlaces<REAL>::Evaluate(REAL const meshPoints[], PointDescriptor const &meshPointDesc,
-                                   REAL p[], REAL du[], REAL dv[],
-                                   PointDescriptor const &resultDesc) const {
-    PointDescriptor const desc(meshPointDesc.size);
-    forEachPlace(meshPoints, meshPointDesc,
-                 [&](Surface<REAL> const &surface, REAL const *points, std::ptrdiff_t number,
-                     REAL const *uv) {
-                     std::ptrdiff_t const result = number * resultDesc.stride;
-                     surface.Evaluate(uv, points, desc, p + result, du + result, dv + result);
-                 });
 }
 
 template class SurfacePlaces<float>;

@@ -68,16 +68,15 @@ public:
     /// \param p              points, of as many numbers
     /// \param resultDesc     the distance from one point to the next
     void Evaluate(REAL const meshPoints[], PointDescriptor const &meshPointDesc, REAL p[],
-                  PointDescriptor const &resultDesc) const;
+                  PointDescriptor const &resultDesc) const {
+        Evaluate(meshPoints, meshPointDesc, p, nullptr, nullptr, resultDesc);
+    }
     /// Overload with first derivatives.
     void Evaluate(REAL const meshPoints[], PointDescriptor const &meshPointDesc, REAL p[],
                   REAL du[], REAL dv[], PointDescriptor const &resultDesc) const;
 
 private:
     SurfacePlaces() = default;
-    template <typename FUNCTION>
-    void forEachPlace(REAL const *meshPoints, PointDescriptor const &meshPointDesc,
-                      FUNCTION const &function) const;
 
     std::vector<Surface<REAL>> _surfaces; // of the faces that have places
     std::vector<Index> _firstPlaces;      // of each, and the end

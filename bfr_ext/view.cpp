@@ -687,24 +687,6 @@ Polyline View::makeEdge(BaseFace const &face, int edge, internal::PointArray con
     return internal::makePolyline(*_data, base, edge, previous);
 }
 
-int View::findLevels(CellTree const &tree, int levels[]) {
-    int const size = tree.GetFaceSize();
-    std::fill(levels, levels + size, 0);
-    for (int cell = 1; cell < tree.GetNumCells(); ++cell) {
-        auto const addLevel = [&](int edge) {
-            levels[edge] = std::max(levels[edge], tree.GetLevel(cell));
-        };
-        if (tree.GetBorderSide(cell) >= 0) {
-            addLevel(tree.GetEdge(cell));
-        }
-        if (tree.GetLongEdgeSide(cell) >= 0) {
-            addLevel(0);
-        }
-    }
-    levels[size] = tree.GetMaxLevel();
-    return size + 1;
-}
-
 CellForest View::makeForest(SurfaceFactory const &factory, ViewBounds *viewBounds,
                             internal::PointArray const &meshPoints, CellForest const *previous,
                             Counts *counts, FarExt::CallStatus *status) const {

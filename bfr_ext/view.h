@@ -197,17 +197,6 @@ public:
         return makeEdge(surface.GetFace(), edge, {controlPoints, pointDesc.stride}, previous);
     }
 
-    /// \brief Writes one level for each edge and one for the inside of a face, as LevelTessellation takes:
-    /// the highest that MakeTree() has there.
-    ///
-    /// Faces that share an edge have to take the larger level of both.
-    /// \return  how many they are
-    template <typename REAL>
-    int FindLevels(Surface<REAL> const &surface, REAL const controlPoints[],
-                   typename Surface<REAL>::PointDescriptor const &pointDesc, int levels[]) const {
-        return findLevels(MakeTree(surface, controlPoints, pointDesc), levels);
-    }
-
     /// \brief Counts of faces and cells of a mesh.
     struct Counts {
         std::vector<long> cellsByLevel; ///< those that are not refined
@@ -254,7 +243,6 @@ private:
                       CellTree const *previous, std::vector<CellVisibility> *visibility) const;
     Polyline makeEdge(BaseFace const &face, int edge, internal::PointArray const &controlPoints,
                       Polyline const *previous) const;
-    static int findLevels(CellTree const &tree, int levels[]);
     CellForest makeForest(SurfaceFactory const &factory, ViewBounds *bounds,
                           internal::PointArray const &meshPoints, CellForest const *previous,
                           Counts *counts, FarExt::CallStatus *status) const;

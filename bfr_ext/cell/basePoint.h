@@ -43,8 +43,7 @@ template <typename POLYGON>
 OPENSUBDIVHEX_INLINE int FindSector(POLYGON const &polygon, FaceShape shape, double x, double y) {
     // Places come in any order: without branches where these are many.
     if (shape == FaceShape(4)) {
-        constexpr int kSectors[2][2] = {{0, 1}, {3, 2}};
-        return kSectors[y > x ? 1 : 0][y > -x ? 1 : 0];
+        return (y > x ? 3 : 0) ^ (y > -x ? 1 : 0);
     }
     if (shape == FaceShape(3)) {
         // The corner that weighs least lies opposite.

@@ -18,10 +18,10 @@ int CellMesh::Find(int sector, Place const &place) const {
     return found == _numbers.end() ? -1 : found->second;
 }
 
-void CellMesh::add(SectorPlace<Place> const &place, int cell, int corner) {
+void CellMesh::add(SectorPlace<Place> const &place) {
     SectorPlace<Place> const name = NameOf(_shape, place);
     if (_numbers.emplace(getKey(name), int(_verts.size())).second) {
-        _verts.push_back({name.sector, name.coords[0], name.coords[1], cell, corner});
+        _verts.push_back({name.sector, name.coords[0], name.coords[1]});
     }
 }
 
@@ -33,27 +33,21 @@ CellMesh::CellMesh(CellTree const &tree, Polyline const edges[], CellShape const
     }
     _verts.reserve(numVerts);
     for (int corner = 0; corner < _shape.size; ++corner) {
-        add(PlaceOnEdge<Place>(_shape, corner, CellShape::kOne, 0), 0, corner);
+        add(PlaceOnEdge<Place>(_shape, corner, CellShape::kOne, 0));
     }
     forEachCellByLevel(CellShape::MakeFace(), [&](CellShape const &cell) {
         if (_tree.IsRefined(cell.number)) {
-            addInside(cell);
+            CellShape const child = cell.GetChild(_tree, 0);
+            for (int corner = 0; corner < child.GetNumCorners(_shape); ++corner) {
+                add(child.GetCorner(_shape, corner));
+            }
         }
     });
     for (int edge = 0; edge < _shape.size; ++edge) {
         for (Polyline::Place const place : edges[edge].GetPlaces()) {
             std::int32_t const end = CellShape::kOne / Polyline::kLength * place;
-            add(PlaceOnEdge<Place>(_shape, edge, CellShape::kOne - end, end), -1, 0);
+            add(PlaceOnEdge<Place>(_shape, edge, CellShape::kOne - end, end));
         }
-    }
-}
-
-// Adds the vertices of the child inside of a cell.
-
-void CellMesh::addInside(CellShape const &cell) {
-    CellShape const child = cell.GetChild(_tree, 0);
-    for (int corner = 0; corner < child.GetNumCorners(_shape); ++corner) {
-        add(child.GetCorner(_shape, corner), child.number, corner);
     }
 }
 

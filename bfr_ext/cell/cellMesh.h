@@ -17,13 +17,10 @@ namespace OpenSubdivHex::BfrExt::internal {
 class CellMesh {
 public:
     /// A vertex: its sector and the coordinates a and b there, in units of 2^-kBits, by NameOf().
-    /// The cell is the first one that it was a corner of, or -1 where it is that of a neighbour alone.
     struct Vertex {
         int sector;
         std::int32_t a;
         std::int32_t b;
-        int cell;
-        int corner;
 
         SectorPlace<CellShape::Place> GetPlace() const { return {sector, {a, b}}; }
     };
@@ -62,8 +59,7 @@ public:
 
 private:
     static std::uint64_t getKey(SectorPlace<Place> const &name);
-    void add(SectorPlace<Place> const &place, int cell, int corner);
-    void addInside(CellShape const &cell);
+    void add(SectorPlace<Place> const &place);
     template <typename FUNCTION>
     void visit(CellShape const &cell, int level, FUNCTION const &function) const;
     template <typename FUNCTION>

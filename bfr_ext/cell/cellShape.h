@@ -30,11 +30,6 @@ struct CellShape : CellOutline<std::array<std::int32_t, 2>> {
                 tree.GetFirstChild(number) + child, level + 1};
     }
 
-    /// Whether it has a point in common with another cell.
-    ///
-    /// \param shape  that of the face
-    bool Touches(FaceShape shape, CellShape const &other) const;
-
     int number; ///< in the tree
     int level;
 };

@@ -25,8 +25,7 @@ void SumUp(WEIGHT const *weights, int numPoints, REAL const *points, Far::Index 
 
 /// \brief Evaluates a base face with its control points at all places of tessellations.
 ///
-/// Leaves of types make the points inside (PatchEvaluator, RateEvaluator), RefinedCells those of large trees, and
-/// BorderEvaluator those on the border.
+/// Leaves of types make the points inside (PatchEvaluator, RateEvaluator), and BorderEvaluator those on the border.
 template <typename REAL>
 class FaceEvaluator {
 public:
@@ -54,14 +53,11 @@ public:
 private:
     void evaluateLeaves(TessellationData const &tessellation, REAL *const *results,
                         PointDescriptor const &resultDesc);
-    void evaluateTree(TessellationData const &tessellation, REAL *const *results,
-                      PointDescriptor const &resultDesc);
     void evaluateSecond(TessellationData const &tessellation, REAL *const *results,
                         PointDescriptor const &resultDesc);
     void turnDerivatives(TessellationData const &tessellation, REAL *const *results,
                          PointDescriptor const &resultDesc) const;
-    template <typename FUNCTION>
-    void useBorder(FUNCTION const &function);
+    BorderEvaluator<REAL> &setBorder();
     void evaluateBorder(TessellationData const &tessellation, BorderEvaluator<REAL> &evaluator,
                         REAL *p, PointDescriptor const &resultDesc) const;
     void sumUp(std::vector<double> const &weights, REAL *result) {

@@ -9,7 +9,9 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <numeric>
+#include <tuple>
 #include <type_traits>
 #include <utility>
 #include <vector>
@@ -94,12 +96,35 @@ std::vector<std::vector<double>> findRows(CellType const &type, int steps, Corne
     return rows;
 }
 
-// Whether some rows weigh a column by more than rounding; weights that are not numbers do.
-bool isUsed(std::vector<double> const *rows, std::size_t numRows, std::size_t column) {
-    constexpr double kRounding = 1e-15;
-    return !std::all_of(rows, rows + numRows, [&](std::vector<double> const &row) {
-        return std::abs(row[column]) <= kRounding;
+// Returns the columns of a patch's points that count.  Others together weigh no more than rounding; they are added to the
+// column that weighs most, so that weights have the same sums.
+template <typename REAL>
+std::vector<int> takeColumns(std::vector<double> *rows) {
+    constexpr double kRounding = 32 * std::numeric_limits<REAL>::epsilon();
+    constexpr double kInfinity = std::numeric_limits<double>::infinity();
+    std::vector<double> weights(rows->size(), 0);
+    for (int row = 0; row < kNumPatchPoints; ++row) {
+        for (std::size_t column = 0; column < weights.size(); ++column) {
+            double const weight = std::abs(rows[row][column]);
+            // Weights that are not numbers are the largest.
+            weights[column] = std::isnan(weight) ? kInfinity : std::max(weights[column], weight);
+        }
+    }
+    std::vector<int> columns(weights.size());
+    std::iota(columns.begin(), columns.end(), 0);
+    std::stable_sort(columns.begin(), columns.end(), [&](int a, int b) {
+        return weights[std::size_t(a)] > weights[std::size_t(b)];
     });
+    auto const first = std::size_t(columns[0]);
+    double left = kRounding;
+    while ((left -= weights[std::size_t(columns.back())]) >= 0) {
+        for (int row = 0; row < kNumPatchPoints; ++row) {
+            rows[row][first] += rows[row][std::size_t(columns.back())];
+        }
+        columns.pop_back();
+    }
+    std::sort(columns.begin(), columns.end());
+    return columns;
 }
 
 // Returns the patches that cells of the type have some levels on, where their corners are as old.
@@ -238,10 +263,12 @@ public:
                 continue;
             }
             grow(_ofChild, _indices.size());
-            for (std::size_t column = 0; column < _indices.size(); ++column) {
-                StepMatrix::CopyPadded(
-                    ofRings + std::size_t(_indices[column]) * _paddedSize, _paddedSize,
-                    &_ofChild[std::size_t(child.GetColumns()[column]) * _paddedSize]);
+            REAL *const ofChild = _ofChild.data();
+            std::size_t const paddedSize = _paddedSize;
+            int const *column = child.GetColumns().data();
+            for (int const index : _indices) {
+                StepMatrix::CopyPadded(ofRings + std::size_t(index) * paddedSize, paddedSize,
+                                       ofChild + std::size_t(*column++) * paddedSize);
             }
             writeRefined(child.GetType(), sources);
         }
@@ -531,27 +558,22 @@ Quadrilateral findInWhole(FaceShape shape, int sector, Pair const &coords, int &
                       corner - 1);
 }
 
-// The derivatives of the coordinates that a map makes of those in a sector, by u and v: once, and by both.
+// The derivatives of a coordinate, which a map makes of those in a sector, by u and v: once, and by both.
 struct ByUv {
-    OPENSUBDIVHEX_INLINE ByUv(Linear const &linear, BfrPlace const &place, bool hasSubFaces) {
-        for (std::size_t i = 0; i < 2; ++i) {
-            // By the coordinates of the plane, which in triangles and quads are u and v.
-            Pair by;
-            for (std::size_t k = 0; k < 2; ++k) {
-                by[k] = linear[i][0] * place.point.toCoords[0][k] +
-                        linear[i][1] * place.point.toCoords[1][k];
-            }
-            first[i] = by;
-            if (hasSubFaces) {
-                auto const &[x, y] = place.toOwn;
-                first[i] = {by[0] * x[0] + by[1] * y[0], by[0] * x[1] + by[1] * y[1]};
-                mixed[i] = by[0] * place.mixed[0] + by[1] * place.mixed[1];
-            }
+    OPENSUBDIVHEX_INLINE ByUv(Pair const &row, BfrPlace const &place, bool hasSubFaces)
+        // By the coordinates of the plane, which in triangles and quads are u and v.
+        : u(row[0] * place.point.toCoords[0][0] + row[1] * place.point.toCoords[1][0]),
+          v(row[0] * place.point.toCoords[0][1] + row[1] * place.point.toCoords[1][1]) {
+        if (hasSubFaces) {
+            auto const &[x, y] = place.toOwn;
+            mixed = u * place.mixed[0] + v * place.mixed[1];
+            std::tie(u, v) = std::pair(u * x[0] + v * y[0], u * x[1] + v * y[1]);
         }
     }
 
-    Pair first[2];
-    Pair mixed = {0, 0};
+    double u;
+    double v;
+    double mixed = 0;
 };
 
 // Adds where the place is in its patch, whose cell has coordinates that are a linear map from those in the sector.
@@ -561,16 +583,16 @@ OPENSUBDIVHEX_INLINE void addPlace(Quadrilateral const &in, Linear const &linear
     // Gregory patches have poles beyond their corners.
     place.s = std::min(std::max(in.s, 0.0), 1.0);
     place.t = std::min(std::max(in.t, 0.0), 1.0);
-    ByUv const cell(linear, ofFace, hasSubFaces);
+    ByUv const x(linear[0], ofFace, hasSubFaces);
+    ByUv const y(linear[1], ofFace, hasSubFaces);
     auto const toSt = [&](double first, double second) {
         return Pair{in.byCoords[0][0] * first + in.byCoords[0][1] * second,
                     in.byCoords[1][0] * first + in.byCoords[1][1] * second};
     };
-    for (std::size_t k = 0; k < 2; ++k) {
-        Pair const byUv = toSt(cell.first[0][k], cell.first[1][k]);
-        place.first[0][k] = byUv[0];
-        place.first[1][k] = byUv[1];
-    }
+    Pair const byU = toSt(x.u, y.u);
+    Pair const byV = toSt(x.v, y.v);
+    place.first[0] = {byU[0], byV[0]};
+    place.first[1] = {byU[1], byV[1]};
     if constexpr (HAS_SECOND) {
         Pair const bend = toSt(in.mixed[0], in.mixed[1]);
         auto const &[s, t] = place.first;
@@ -578,17 +600,16 @@ OPENSUBDIVHEX_INLINE void addPlace(Quadrilateral const &in, Linear const &linear
         for (std::size_t i = 0; i < 3; ++i) {
             place.second[i] = {-bend[0] * products[i], -bend[1] * products[i]};
         }
-        Pair const mixed = toSt(cell.mixed[0], cell.mixed[1]);
+        Pair const mixed = toSt(x.mixed, y.mixed);
         place.second[1] = {place.second[1][0] + mixed[0], place.second[1][1] + mixed[1]};
     }
 }
 
-// In the whole cell of a level.
+// The place in a whole or half cell of a level, but for its patch in a half cell.
 template <bool HAS_SECOND>
-PatchPlace findInMiddle(BfrPlace const &ofFace, FaceShape shape, int level) {
+void findInMiddle(BfrPlace const &ofFace, FaceShape shape, int level, PatchPlace &place) {
     double const scale = 1 << level;
     auto const [a, b] = ofFace.point.coords;
-    PatchPlace place;
     place.patch = 0;
     Linear linear;
     Quadrilateral const in =
@@ -597,35 +618,39 @@ PatchPlace findInMiddle(BfrPlace const &ofFace, FaceShape shape, int level) {
         row = {scale * row[0], scale * row[1]};
     }
     addPlace<HAS_SECOND>(in, linear, ofFace, shape.size > 4, place);
-    return place;
 }
-
-// The number of the patch that is a half cell.
-OPENSUBDIVHEX_INLINE int findPatch(SectorCell const &cell, int sector, FaceShape shape) {
-    return MakeFaceCells(shape).GetNumPatches() + shape.GetNumSectors() * cell.numBeforeStep +
-           (sector - shape.GetFirstSector()) * cell.numInStep + cell.numBefore;
-}
-
-// In that cell; null: in the whole cell.
 template <bool HAS_SECOND>
-OPENSUBDIVHEX_INLINE PatchPlace findPatchPlace(BfrPlace const &ofFace, FaceShape shape, int level,
-                                               SectorCell const *cell) {
+OPENSUBDIVHEX_INLINE void findInHalfCell(BfrPlace const &ofFace, FaceShape shape,
+                                         CellMap const &map, PatchPlace &place) {
+    addPlace<HAS_SECOND>(findInTrapezoid(map.Apply(ofFace.point.coords)),
+                         {map.rows[0], map.rows[1]}, ofFace, shape.size > 4, place);
+}
+
+// Finds the place in its patch.  Calls function() as soon as the number of the patch is known, if it is a half cell.
+template <typename FUNCTION>
+OPENSUBDIVHEX_INLINE void findPatchPlace(BfrPlace const &ofFace, FaceShape shape, int level,
+                                         int numDerivatives, PatchPlace &place,
+                                         FUNCTION const &function) {
+    SectorCell const *const cell = SectorCells::Get(level).Find(ofFace.point.coords);
     if (!cell) {
-        return findInMiddle<HAS_SECOND>(ofFace, shape, level);
+        numDerivatives > 1 ? findInMiddle<true>(ofFace, shape, level, place)
+                           : findInMiddle<false>(ofFace, shape, level, place);
+        return;
     }
-    PatchPlace place;
-    place.patch = findPatch(*cell, ofFace.point.sector, shape);
-    addPlace<HAS_SECOND>(findInTrapezoid(cell->map.Apply(ofFace.point.coords)),
-                         {cell->map.rows[0], cell->map.rows[1]}, ofFace, shape.size > 4, place);
-    return place;
+    place.patch =
+        MakeFaceCells(shape).GetNumPatches() + shape.GetNumSectors() * cell->numBeforeStep +
+        (ofFace.point.sector - shape.GetFirstSector()) * cell->numInStep + cell->numBefore;
+    function();
+    numDerivatives > 1 ? findInHalfCell<true>(ofFace, shape, cell->map, place)
+                       : findInHalfCell<false>(ofFace, shape, cell->map, place);
 }
 
 } // namespace
 
 PatchPlace FindPatchPlace(BfrPlace const &ofFace, FaceShape shape, int level, int numDerivatives) {
-    SectorCell const *const cell = SectorCells::Get(level).Find(ofFace.point.coords);
-    return numDerivatives > 1 ? findPatchPlace<true>(ofFace, shape, level, cell)
-                              : findPatchPlace<false>(ofFace, shape, level, cell);
+    PatchPlace place;
+    findPatchPlace(ofFace, shape, level, numDerivatives, place, [] {});
+    return place;
 }
 
 namespace {
@@ -647,16 +672,13 @@ OPENSUBDIVHEX_INLINE void prefetch([[maybe_unused]] T const *numbers,
 } // namespace
 
 template <typename REAL>
-PatchRows<REAL>::PatchRows(std::vector<std::vector<double>> const &rows) {
+PatchRows<REAL>::PatchRows(std::vector<std::vector<double>> rows) {
     std::vector<std::size_t> firstWeights;
     for (std::size_t first = 0; first < rows.size(); first += kNumPatchPoints) {
-        std::vector<double> const *const points = &rows[first];
+        std::vector<double> *const points = &rows[first];
         std::size_t const firstColumn = _columns.size();
-        for (std::size_t column = 0; column < points->size(); ++column) {
-            if (isUsed(points, kNumPatchPoints, column)) {
-                _columns.push_back(int(column));
-            }
-        }
+        std::vector<int> const used = takeColumns<REAL>(points);
+        _columns.insert(_columns.end(), used.begin(), used.end());
         int const numUsed = int(_columns.size() - firstColumn);
         int const numColumns = PatchBlock<REAL>::GetPaddedSize(numUsed);
         _columns.resize(firstColumn + std::size_t(numColumns), _columns[firstColumn]);
@@ -745,17 +767,18 @@ void FacePatches<REAL>::MakePoints(BaseType const &type, int level, REAL const *
     }
 }
 
-// Returns the part that has a patch, and which of the part's patches it is.
 template <typename REAL>
-auto FacePatches<REAL>::findPart(int level, int &patch) const -> Part const & {
+auto FacePatches<REAL>::findBlock(int level, int patch) const
+    -> std::pair<Part const *, PatchBlock<REAL> const *> {
     if (patch < _numInFirst) {
-        return _parts[0];
+        return {&_parts[0], _parts[0].blocks + patch};
     }
     int const levels = 2 * (level - 1);
     int const behindFirst = patch - _numInFirst;
-    patch = behindFirst & ((1 << levels) - 1);
     std::size_t const number = 1 + std::size_t(behindFirst >> levels);
-    return number < _parts.size() ? _parts[number] : _otherParts[number - _parts.size()];
+    Part const &part =
+        number < _parts.size() ? _parts[number] : _otherParts[number - _parts.size()];
+    return {&part, part.blocks + (behindFirst & ((1 << levels) - 1))};
 }
 
 template <typename REAL>
@@ -765,18 +788,15 @@ void FacePatches<REAL>::Evaluate(Bfr::Parameterization const &parameterization, 
     prefetch(&_numInFirst,
              (sizeof(_numInFirst) + sizeof(_numParts) + sizeof(_parts)) / sizeof(int));
     BfrPlace const ofFace = FindBfrPlace(parameterization, shape, uv, 0);
-    SectorCell const *const cell = SectorCells::Get(level).Find(ofFace.point.coords);
-    if (cell) {
-        int patch = findPatch(*cell, ofFace.point.sector, shape);
-        Part const &part = findPart(level, patch);
-        prefetch(part.blocks + patch, 1);
-        prefetch(points + part.firstPoint * stride, part.numPoints * stride);
-    }
-    PatchPlace place = numDerivatives > 1 ? findPatchPlace<true>(ofFace, shape, level, cell)
-                                          : findPatchPlace<false>(ofFace, shape, level, cell);
-    Part const &part = findPart(level, place.patch);
-    SumUpPatch({place, numDerivatives, part.blocks[place.patch], points + part.firstPoint * stride,
-                size, stride, results});
+    PatchPlace place;
+    findPatchPlace(ofFace, shape, level, numDerivatives, place, [&] {
+        auto const [part, block] = findBlock(level, place.patch);
+        prefetch(block, 1);
+        prefetch(points + part->firstPoint * stride, part->numPoints * stride);
+    });
+    auto const [part, block] = findBlock(level, place.patch);
+    SumUpPatch(
+        {place, numDerivatives, *block, points + part->firstPoint * stride, size, stride, results});
 }
 
 template class PatchRows<float>;

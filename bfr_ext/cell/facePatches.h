@@ -8,6 +8,7 @@
 
 #include <array>
 #include <cstddef>
+#include <utility>
 #include <vector>
 
 namespace OpenSubdivHex::BfrExt::internal {
@@ -31,7 +32,7 @@ public:
     /// None.
     PatchRows() = default;
     /// \param rows  by patch those of its kNumPatchPoints points, weights of all points of the cell
-    explicit PatchRows(std::vector<std::vector<double>> const &rows);
+    explicit PatchRows(std::vector<std::vector<double>> rows);
 
     std::size_t GetHeapSize() const { return GetHeapSizes(_blocks, _columns, _weights); }
     std::vector<PatchBlock<REAL>> const &GetBlocks() const { return _blocks; }
@@ -86,7 +87,8 @@ private:
 
     void add(std::vector<PatchBlock<REAL>> const &blocks, int firstPoint, int numPoints);
     void addChild(ChildPatches<REAL> const &child, int numControlPoints);
-    Part const &findPart(int level, int &patch) const;
+    // The part that has a patch, and the patch there.
+    std::pair<Part const *, PatchBlock<REAL> const *> findBlock(int level, int patch) const;
 
     // What evaluation reads comes first, and lies together: types of faces are mostly not in the cache.
     int _numInFirst = 0; // patches of the first part

@@ -7,21 +7,82 @@
 
 namespace OpenSubdivHex::BfrExt::internal {
 
-FaceSections::FaceSections(FaceLevels const &faceLevels, int maxLeaves)
-    : _levels(faceLevels.levels), _tree(nullptr), _cells(faceLevels.shape) {
-    FaceShape const shape = faceLevels.shape;
-    for (int edge = 0; edge < shape.size; ++edge) {
-        int const level = GetEdgeLevel(shape, edge, _levels[std::size_t(edge)]);
-        _polylines.emplace(level, Polyline(level));
+namespace {
+
+using FarExt::internal::BasePolygon;
+
+// The corners of a cell in the plane of its face.
+std::vector<Pair> findOutline(BasePolygon const &polygon, CellShape const &cell) {
+    std::vector<Pair> corners(std::size_t(cell.GetNumCorners(polygon.GetShape())));
+    for (std::size_t i = 0; i < corners.size(); ++i) {
+        auto const [sector, place] = cell.GetCorner(polygon.GetShape(), int(i));
+        polygon.Write(sector,
+                      {std::ldexp(double(place[0]), -CellShape::kBits),
+                       std::ldexp(double(place[1]), -CellShape::kBits)},
+                      corners[i].data());
     }
+    return corners;
+}
+
+// Whether a side of a convex polygon has all of another polygon on its outer side.
+bool hasSideBetween(std::vector<Pair> const &polygon, std::vector<Pair> const &other) {
+    constexpr double kTolerance = 1e-12; // of areas, which are 1e-8 at least
+    for (std::size_t i = 0; i < polygon.size(); ++i) {
+        Pair const &start = polygon[i];
+        Pair const &end = polygon[i + 1 == polygon.size() ? 0 : i + 1];
+        if (std::all_of(other.begin(), other.end(), [&](Pair const &p) {
+                return (end[0] - start[0]) * (p[1] - start[1]) -
+                           (end[1] - start[1]) * (p[0] - start[0]) <
+                       -kTolerance;
+            })) {
+            return true;
+        }
+    }
+    return false;
+}
+
+} // namespace
+
+PlaceLevels::PlaceLevels(FaceLevels const &levels)
+    : ofEdges(levels.levels.begin(), levels.levels.end() - 1), ofInside(levels.levels.back()),
+      ofAll(*std::max_element(levels.levels.begin(), levels.levels.end())) {
+    for (int edge = 0; edge < levels.shape.GetFirstSector(); ++edge) {
+        ++ofEdges[std::size_t(edge)]; // divided once more
+    }
+}
+
+PlaceLevels::PlaceLevels(CellTree const &tree, std::vector<Polyline> const &edges)
+    : ofInside(tree.GetMaxLevel()), ofAll(ofInside) {
+    constexpr int kLastOfLongEdge = Polyline::kLastLevel + 1;
+    for (Polyline const &edge : edges) {
+        // Levels 0 and 1 give an edge the same.
+        int level = 0;
+        while (level <= kLastOfLongEdge && Polyline(level).GetNumPoints() < edge.GetNumPoints()) {
+            ++level;
+        }
+        ofEdges.push_back(level <= kLastOfLongEdge && Polyline(level) == edge ? level : -1);
+        // Places of a level are multiples of that of its first one.
+        for (int const place : edge.GetPlaces()) {
+            while (place % (Polyline::kLength >> ofAll) != 0) {
+                ++ofAll;
+            }
+        }
+    }
+}
+
+FaceSections::FaceSections(FaceLevels const &faceLevels, int maxLeaves)
+    : _levels(faceLevels.levels), _tree(nullptr), _placeLevels(faceLevels),
+      _edges(_placeLevels.ofEdges.begin(), _placeLevels.ofEdges.end()), _cells(faceLevels.shape) {
     cut(maxLeaves, [&](int cell, int) {
         int const numSteps = _levels.back() - _cells.GetLevel(cell);
-        return _cells.IsWhole(cell) ? CountLeaves(shape, numSteps) : std::ldexp(1.0, 2 * numSteps);
+        return _cells.IsWhole(cell) ? CountLeaves(GetFaceShape(), numSteps)
+                                    : std::ldexp(1.0, 2 * numSteps);
     });
 }
 
 FaceSections::FaceSections(CellTree const &tree, std::vector<Polyline> edges, int maxLeaves)
-    : _tree(&tree), _edges(std::move(edges)), _cells(tree.GetFaceShape()) {
+    : _tree(&tree), _placeLevels(tree, edges), _edges(std::move(edges)),
+      _cells(tree.GetFaceShape()) {
     // No further than it has to be known.
     auto const count = [&](auto const &self, int cell, int most) -> int {
         int const first = tree.GetFirstChild(cell);
@@ -89,6 +150,12 @@ CellTree FaceSections::MakeTree(int section, CellShape *shape) const {
     }
     std::reverse(path.begin(), path.end());
     CellTree tree(GetFaceShape());
+    BasePolygon const polygon(GetFaceShape());
+    std::vector<Pair> const outline = findOutline(polygon, own);
+    auto const touchesSection = [&](CellShape const &cell) {
+        std::vector<Pair> const ofCell = findOutline(polygon, cell);
+        return !hasSideBetween(outline, ofCell) && !hasSideBetween(ofCell, outline);
+    };
     auto const visit = [&](auto const &self, CellShape const &cell, int wholeCell, bool hasSection,
                            bool isInside) -> void {
         bool const isSection = hasSection && std::size_t(cell.level) == path.size();
@@ -96,8 +163,7 @@ CellTree FaceSections::MakeTree(int section, CellShape *shape) const {
             *shape = cell;
         }
         bool const isOther = !hasSection && !isInside;
-        if (!isRefined(tree, cell.number, wholeCell) ||
-            (isOther && !own.Touches(GetFaceShape(), cell))) {
+        if (!isRefined(tree, cell.number, wholeCell) || (isOther && !touchesSection(cell))) {
             return;
         }
         tree.Refine(cell.number);

@@ -5,8 +5,6 @@
 #include "cellMesh.h"
 
 #include <cmath>
-#include <limits>
-#include <map>
 #include <memory>
 #include <vector>
 
@@ -14,21 +12,20 @@ namespace OpenSubdivHex::BfrExt::internal {
 
 /// The levels of a face: those of its edges, then that of the inside.
 struct FaceLevels {
-    /// A key that identifies them.
-    std::vector<int> GetKey() const {
-        std::vector<int> key = levels;
-        if (shape.isHalf) {
-            key.push_back(std::numeric_limits<int>::min());
-        }
-        return key;
-    }
-    friend bool operator==(FaceLevels const &a, FaceLevels const &b) {
-        return a.shape == b.shape && a.levels == b.levels;
-    }
-    friend bool operator!=(FaceLevels const &a, FaceLevels const &b) { return !(a == b); }
-
     FaceShape shape;
     std::vector<int> levels;
+};
+
+/// The levels of the places of a face.
+struct PlaceLevels {
+    PlaceLevels() = default;
+    explicit PlaceLevels(FaceLevels const &levels);
+    /// \param edges  by edge of the face, with all points that the tree has there
+    PlaceLevels(CellTree const &tree, std::vector<Polyline> const &edges);
+
+    std::vector<int> ofEdges; ///< by edge, the level of which it has the polyline; -1: none
+    int ofInside = 0;         ///< the highest
+    int ofAll = 0;            ///< the highest, with those on the border
 };
 
 /// \brief A base face whose cells are too many to be made at once, cut into *sections*: cells with all
@@ -57,16 +54,10 @@ public:
     int GetNumSections() const { return int(_sections.size()); }
     /// Levels of edges, then of the inside; empty for a tree.
     std::vector<int> const &GetLevels() const { return _levels; }
+    /// Those of the whole face.
+    PlaceLevels const &GetPlaceLevels() const { return _placeLevels; }
     /// The points of an edge of the face.
-    Polyline const &GetEdge(int edge) const {
-        return _levels.empty()
-                   ? _edges[std::size_t(edge)]
-                   : _polylines.at(GetEdgeLevel(GetFaceShape(), edge, _levels[std::size_t(edge)]));
-    }
-    /// The level of the polyline that an edge has where its cells have a level.
-    static int GetEdgeLevel(FaceShape shape, int edge, int level) {
-        return edge < shape.GetFirstSector() ? level + 1 : level;
-    }
+    Polyline const &GetEdge(int edge) const { return _edges[std::size_t(edge)]; }
 
     /// The vertices of the sections.
     std::vector<CellMesh::Vertex> const &GetVertices() const { return _mesh->GetVertices(); }
@@ -100,8 +91,8 @@ private:
 
     std::vector<int> const _levels;
     CellTree const *const _tree; // null of levels
+    PlaceLevels const _placeLevels;
     std::vector<Polyline> const _edges;
-    std::map<int, Polyline> _polylines; // by level
     CellTree _cells;
     std::vector<int> _parents; // by cell of these
     std::vector<CellShape> _sections;

@@ -12,6 +12,7 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <vector>
 
 namespace OpenSubdivHex::BfrExt::internal {
@@ -25,9 +26,8 @@ class PatchPlans {
 public:
     using Plan = std::shared_ptr<LevelTessellation const>;
 
-    PatchPlans(LevelTessellation::Options const &options, bool hasDerivatives,
-               std::size_t maxMemory)
-        : _options(options), _hasDerivatives(hasDerivatives), _maxMemory(maxMemory) {}
+    PatchPlans(bool hasDerivatives, std::size_t maxMemory)
+        : _hasDerivatives(hasDerivatives), _maxMemory(maxMemory) {}
 
     std::size_t GetMaxMemory() const { return _maxMemory; }
     /// \brief About what it takes in memory to make the plan of some levels, with the plan itself.
@@ -61,42 +61,22 @@ public:
         return int(std::clamp(_maxMemory / 8 / getBytesOfPlace(), kMinLeaves, kMaxLeaves));
     }
 
-    /// \brief Finds the plan of some levels, or makes it.
-    ///
-    /// Threads that want a plan wait for it, since it takes memory to make one.
-    Plan Find(FaceLevels const &levels) {
-        return find(levels.GetKey(), GetSizeOfMaking(levels), [&] {
-            return LevelTessellation(Parameterization(levels.shape), int(levels.levels.size()),
-                                     levels.levels.data(), _options);
-        });
+    /// The size of the plan of a section, and of a tree that has so many cells and points on its edges.
+    std::size_t GetSizeOfSection() const { return std::size_t(GetMaxLeaves()) * getBytesOfPlace(); }
+    std::size_t GetSizeOfTree(std::size_t numCells) const {
+        return kBytesOfPlan + numCells * getBytesOfPlace();
     }
-    /// The plan of a section.
-    Plan Find(FaceSections const &sections, int section) {
-        std::vector<int> key = FaceLevels{sections.GetFaceShape(), sections.GetLevels()}.GetKey();
-        key.push_back(-1 - section);
-        return find(key, std::size_t(GetMaxLeaves()) * getBytesOfPlace(),
-                    [&] { return LevelTessellation(sections, section, _options); });
-    }
-    /// \brief The plan of a tree, which make() makes if there is none.
+
+    /// \brief Finds a plan, or has make() make it, for which other threads wait that want the same.
     ///
-    /// Threads do not wait for each other: that of small trees takes little memory.
-    ///
-    /// \param key  tells the tree and the polylines
+    /// \param key   tells it
+    /// \param size  what it takes in memory to make it
     template <typename MAKE>
-    Plan Find(std::vector<int> const &key, MAKE const &make) {
-        {
-            std::lock_guard<std::mutex> const lock(_mutex);
-            if (Plan plan = look(key)) {
-                return plan;
-            }
-        }
-        auto plan = std::make_shared<LevelTessellation const>(make());
-        std::size_t const size =
-            kBytesOfPlan + std::size_t(plan->GetNumCoords()) * getBytesOfPlace();
-        return find(key, size, [&] { return *plan; });
+    Plan Find(std::vector<int> const &key, std::size_t size, MAKE const &make) {
+        std::shared_ptr<MadePlan> const plan = find(key, size);
+        std::call_once(plan->once, [&] { plan->tessellation.emplace(make()); });
+        return {plan, &*plan->tessellation};
     }
-    /// Whether the faces of a forest with such a tree are likely to be several.
-    static bool IsShared(CellTree const &tree) { return tree.GetNumCells() <= kMaxCellsOfShared; }
 
     /// Forgets what is too much.
     void Trim() {
@@ -113,11 +93,14 @@ private:
 
     // Bytes of the members of a plan, and of the heap's share of its arrays.
     static constexpr std::size_t kBytesOfPlan = 2048;
-    static constexpr int kMaxCellsOfShared = 128;
 
+    struct MadePlan {
+        std::once_flag once;
+        std::optional<LevelTessellation> tessellation;
+    };
     struct Entry {
         std::vector<int> key;
-        Plan plan;
+        std::shared_ptr<MadePlan> plan;
         std::size_t size;
     };
 
@@ -132,25 +115,15 @@ private:
         return numLeaves > kMaxLeavesOfFace && size > double(_maxMemory) / 4;
     }
 
-    // The plan of a key, or null.
-    Plan look(std::vector<int> const &key) {
-        auto const found = _places.find(key);
-        if (found == _places.end()) {
-            return nullptr;
-        }
-        _plans.splice(_plans.begin(), _plans, found->second);
-        return _plans.front().plan;
-    }
-
-    // A key is the levels, and behind them -1 - section; or what tells a tree.
-    template <typename MAKE>
-    Plan find(std::vector<int> const &key, std::size_t size, MAKE const &make) {
+    std::shared_ptr<MadePlan> find(std::vector<int> const &key, std::size_t size) {
         std::lock_guard<std::mutex> const lock(_mutex);
-        if (Plan plan = look(key)) {
-            return plan;
+        auto const found = _places.find(key);
+        if (found != _places.end()) {
+            _plans.splice(_plans.begin(), _plans, found->second);
+            return _plans.front().plan;
         }
         makeRoom(size);
-        _plans.push_front({key, std::make_shared<LevelTessellation const>(make()), size});
+        _plans.push_front({key, std::make_shared<MadePlan>(), size});
         try {
             _places.emplace(key, _plans.begin());
         } catch (...) {
@@ -174,7 +147,6 @@ private:
         }
     }
 
-    LevelTessellation::Options const _options;
     bool const _hasDerivatives;
     std::size_t const _maxMemory;
     std::size_t _memory = 0;

@@ -73,6 +73,8 @@ void SumUpPatchPortable(PatchSums<float> const &sums);
 void SumUpPatchPortable(PatchSums<double> const &sums);
 void SumUpPatchAvx2(PatchSums<float> const &sums);
 void SumUpPatchAvx2(PatchSums<double> const &sums);
+void SumUpPatchAvx512(PatchSums<float> const &sums);
+void SumUpPatchAvx512(PatchSums<double> const &sums);
 /// @}
 
 } // namespace OpenSubdivHex::BfrExt::internal

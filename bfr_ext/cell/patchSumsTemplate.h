@@ -115,20 +115,77 @@ OPENSUBDIVHEX_INLINE auto PointColumns<REAL>::SumUp(Numbers const &numbers) ->
 }
 #endif
 
-/// The cubic Bernstein polynomials at a coordinate, and their derivatives.
+/// \brief The cubic Bernstein polynomials at a place of a patch, and their derivatives.
+///
+/// Those along s and along t are made at once, and so are the two halves of each, which are mirror images.
 template <typename REAL>
-struct PatchCubics {
-    OPENSUBDIVHEX_INLINE explicit PatchCubics(double coordinate)
-        : PatchCubics(REAL(1 - coordinate), REAL(coordinate)) {}
-    OPENSUBDIVHEX_INLINE PatchCubics(REAL r, REAL s)
-        : toStart(r),
-          toEnd(s), ofOrder{{r * r * r, 3 * r * r * s, 3 * r * s * s, s * s * s},
-                            {-3 * r * r, 3 * r * (r - 2 * s), 3 * s * (2 * r - s), 3 * s * s},
-                            {6 * r, 6 * (s - 2 * r), 6 * (r - 2 * s), 6 * s}} {}
+class PatchCubics {
+public:
+    OPENSUBDIVHEX_INLINE PatchCubics(REAL s, REAL t) {
+        Four const x{s, t, 1 - t, 1 - s};
+        Four const y{x[3], x[2], x[1], x[0]};
+        constexpr Four kThree{3, 3, -3, -3};
+        _ends[0] = x * x * x;
+        _middles[0] = x * x * y * REAL(3);
+        _ends[1] = x * x * kThree;
+        _middles[1] = x * (y + y - x) * kThree;
+        _ends[2] = x * REAL(6);
+        _middles[2] = (y - x - x) * REAL(6);
+        // The share of the first of two points inside of a corner; where both distances are 0, half.
+        constexpr REAL kLeast = std::numeric_limits<REAL>::min();
+        Four const ofFirst = x + Four{kLeast, kLeast, kLeast, kLeast};
+        Four const ofBoth = ofFirst + Four{ofFirst[1], ofFirst[3], ofFirst[0], ofFirst[2]};
+        for (std::size_t i = 0; i < 4; ++i) {
+            _shares[i] = ofFirst[i] / ofBoth[i];
+        }
+    }
 
-    REAL toStart; ///< what the ends weigh
-    REAL toEnd;
-    REAL ofOrder[3][4];
+    /// Of the first point inside of each corner.
+    OPENSUBDIVHEX_INLINE REAL GetShare(int corner) const { return _shares[corner]; }
+    OPENSUBDIVHEX_INLINE REAL GetAlongS(int order, int i) const { return get(order, i, 0); }
+    OPENSUBDIVHEX_INLINE REAL GetAlongT(int order, int i) const { return get(order, i, 1); }
+
+private:
+    using Four = typename Registers<REAL, 4 * sizeof(REAL)>::Lanes;
+
+    OPENSUBDIVHEX_INLINE REAL get(int order, int i, int coordinate) const {
+        auto const &polynomials = i == 0 || i == 3 ? _ends : _middles;
+        return polynomials[order][std::size_t(i < 2 ? 3 - coordinate : coordinate)];
+    }
+
+    // By order of the derivative; lanes are for the end and the start of s and t: s, t, 1 - t, 1 - s.
+    Four _ends[3];    // by x three times
+    Four _middles[3]; // by x twice
+    REAL _shares[4];
+};
+
+/// \brief Some of the points of a block, number by number.
+template <typename REAL>
+class BlockPoints {
+public:
+    static constexpr int kGroup = PatchBlock<REAL>::kGroup;
+    static constexpr int kMaxGroups = 8;
+
+    /// \param first         the first group
+    /// \param size, stride  as of PatchKernel::Write()
+    template <typename SIZE, typename STRIDE>
+    OPENSUBDIVHEX_INLINE void Load(PatchBlock<REAL> const &block, int first, REAL const *points,
+                                   SIZE size, STRIDE stride) {
+        _numGroups = std::min(kMaxGroups, block.numColumns / kGroup - first);
+        int const *columns = block.columns + first * kGroup;
+        for (int i = 0; i < _numGroups; ++i, columns += kGroup) {
+            PointColumns<REAL>::Load(points, stride, size, columns, _numbers[i]);
+        }
+    }
+
+    int GetNumGroups() const { return _numGroups; }
+    typename PointColumns<REAL>::Numbers const &operator[](int group) const {
+        return _numbers[group];
+    }
+
+private:
+    int _numGroups;
+    typename PointColumns<REAL>::Numbers _numbers[kMaxGroups];
 };
 
 /// \brief The point of a patch and its derivatives, as far as NUM_DERIVATIVES asks.
@@ -138,57 +195,43 @@ template <int NUM_DERIVATIVES, typename REAL>
 class PatchKernel {
 public:
     OPENSUBDIVHEX_INLINE explicit PatchKernel(PatchSums<REAL> const &all)
-        : _all(all), _s(all.place.s), _t(all.place.t) {
-        // The share of the first of two points inside of a corner; where both distances are 0, half.
-        auto const getShare = [](REAL ofFirst, REAL ofSecond) {
-            constexpr REAL kLeast = std::numeric_limits<REAL>::min();
-            return (ofFirst + kLeast) / (ofFirst + ofSecond + 2 * kLeast);
-        };
-        _shares[0] = getShare(_s.toEnd, _t.toEnd);
-        _shares[1] = getShare(_t.toEnd, _s.toStart);
-        _shares[2] = getShare(_t.toStart, _s.toEnd);
-        _shares[3] = getShare(_s.toStart, _t.toStart);
-    }
+        : _all(all), _cubics(REAL(all.place.s), REAL(all.place.t)) {}
 
     /// Writes \p size numbers of the results, no more than four, from the first one on.
     ///
+    /// \param points        those of the block, from the first one on
     /// \param size, stride  integral constants where they are known
     template <typename SIZE, typename STRIDE>
-    OPENSUBDIVHEX_INLINE void Write(int first, SIZE size, STRIDE stride) const {
-        ColumnLanes sums[kNumSums][kNumPointLanes];
-        for (auto &sum : sums) {
-            std::fill(std::begin(sum), std::end(sum), ColumnLanes{});
-        }
-        int const *columns = _all.block.columns;
+    OPENSUBDIVHEX_INLINE void Write(BlockPoints<REAL> &points, int first, SIZE size,
+                                    STRIDE stride) const {
+        constexpr std::make_index_sequence<kNumSums> kAllSums{};
+        ColumnSums sums[kNumSums] = {};
         REAL const *rows = _all.block.weights;
-        for (int left = _all.block.numColumns; left > 0; left -= kMaxColumns) {
-            ColumnLanes weights[kMaxColumns / kGroup][kNumSums];
-            int const numGroups = std::min(kMaxColumns, left) / kGroup;
-            for (int i = 0; i < numGroups; ++i, rows += kNumPatchPoints * kGroup) {
-                weighColumns(rows, weights[i]);
+        int const numGroups = _all.block.numColumns / kGroup;
+        for (int group = 0;;) {
+            for (int i = 0; i < points.GetNumGroups(); ++i, rows += kNumPatchPoints * kGroup) {
+                ColumnLanes weights[kNumSums] = {};
+                weighColumns(rows, weights);
+                addProducts(weights, points[i], size, sums, kAllSums);
             }
-            for (int i = 0; i < numGroups; ++i, columns += kGroup) {
-                ColumnLanes numbers[kNumPointLanes];
-                PointColumns<REAL>::Load(_all.points + first, stride, size, columns, numbers);
-                for (int sum = 0; sum < kNumSums; ++sum) {
-                    for (int k = 0; k < size; ++k) {
-                        Columns::AddProducts(sums[sum][k], weights[i][sum], numbers[k]);
-                    }
-                }
+            group += points.GetNumGroups();
+            if (group >= numGroups) {
+                break;
             }
+            points.Load(_all.block, group, _all.points + first, size, stride);
         }
         typename Point::Lanes bySt[kNumSums];
-        for (int i = 0; i < kNumSums; ++i) {
-            bySt[i] = PointColumns<REAL>::SumUp(sums[i]);
-        }
+        sumUp(sums, bySt, kAllSums);
         // Adds some of these by factors.
         auto const write = [&](int result, auto const &...factors) {
             typename Point::Lanes sum{};
             int next = 1;
             (Point::AddProducts(sum, bySt[next++], REAL(factors)), ...);
-            REAL numbers[kNumPointLanes];
-            Point::Store(sizeof...(factors) == 0 ? bySt[0] : sum, numbers);
-            std::copy_n(numbers, int(size), _all.results[result] + first);
+            sum = sizeof...(factors) == 0 ? bySt[0] : sum;
+            REAL *const numbers = _all.results[result] + first;
+            for (int k = 0; k < size; ++k) {
+                numbers[k] = sum[std::size_t(k)];
+            }
         };
         write(0);
         if constexpr (NUM_DERIVATIVES > 0) {
@@ -210,13 +253,33 @@ public:
 private:
     using Columns = typename PointColumns<REAL>::Columns;
     using ColumnLanes = typename Columns::Lanes;
+    using ColumnSums = typename PointColumns<REAL>::Numbers;
     using Point = typename PointColumns<REAL>::Point;
     static constexpr int kGroup = PatchBlock<REAL>::kGroup;
-    static constexpr int kMaxColumns = 8 * kGroup; // whose weights are kept
 
     /// The point; its derivatives by s, t; by s twice, both, and t twice.
     static constexpr int kNumSums = NUM_DERIVATIVES == 0 ? 1 : NUM_DERIVATIVES == 1 ? 3 : 6;
     static constexpr int kOrders[6][2] = {{0, 0}, {1, 0}, {0, 1}, {2, 0}, {1, 1}, {0, 2}};
+
+    // Indices of sums are constants, without which GCC would keep sums in memory.
+    template <typename SIZE, std::size_t... SUM>
+    OPENSUBDIVHEX_INLINE static void addProducts(ColumnLanes const (&weights)[kNumSums],
+                                                 ColumnLanes const (&numbers)[kNumPointLanes],
+                                                 SIZE size, ColumnSums (&sums)[kNumSums],
+                                                 std::index_sequence<SUM...> /*all*/) {
+        (Columns::AddProducts(sums[SUM][0], weights[SUM], numbers[0]), ...);
+        (Columns::AddProducts(sums[SUM][1], weights[SUM], numbers[1]), ...);
+        (Columns::AddProducts(sums[SUM][2], weights[SUM], numbers[2]), ...);
+        if (size > 3) {
+            (Columns::AddProducts(sums[SUM][3], weights[SUM], numbers[3]), ...);
+        }
+    }
+    template <std::size_t... SUM>
+    OPENSUBDIVHEX_INLINE static void sumUp(ColumnSums const (&sums)[kNumSums],
+                                           typename Point::Lanes (&bySt)[kNumSums],
+                                           std::index_sequence<SUM...> /*all*/) {
+        ((bySt[SUM] = PointColumns<REAL>::SumUp(sums[SUM])), ...);
+    }
 
     OPENSUBDIVHEX_INLINE void weighColumns(REAL const *rows,
                                            ColumnLanes (&weights)[kNumSums]) const {
@@ -228,15 +291,15 @@ private:
                     int const corner = 2 * (k - 1) + i - 1;
                     Columns::AddProducts(
                         row, Columns::Load(rows + (PatchRow::kNumBicubic + corner) * kGroup),
-                        _shares[corner]);
+                        _cubics.GetShare(corner));
                 }
                 for (int order = 0; order <= NUM_DERIVATIVES; ++order) {
-                    add(i, row, _s.ofOrder[order][i], alongS[order]);
+                    add(i, row, _cubics.GetAlongS(order, i), alongS[order]);
                 }
             }
             for (int sum = 0; sum < kNumSums; ++sum) {
                 auto const [ofS, ofT] = kOrders[sum];
-                add(k, alongS[ofS], _t.ofOrder[ofT][k], weights[sum]);
+                add(k, alongS[ofS], _cubics.GetAlongT(ofT, k), weights[sum]);
             }
         }
     }
@@ -251,21 +314,25 @@ private:
     }
 
     PatchSums<REAL> const &_all;
-    PatchCubics<REAL> const _s;
-    PatchCubics<REAL> const _t;
-    REAL _shares[4]; // of the first point inside of each corner
+    PatchCubics<REAL> const _cubics;
 };
 
 template <int NUM_DERIVATIVES, typename REAL>
 void sumUpPatch(PatchSums<REAL> const &sums) {
-    PatchKernel<NUM_DERIVATIVES, REAL> const kernel(sums);
+    // Points are there by the time that the place is found.
     if (sums.size == 3 && sums.stride == 3) { // by far the most
         constexpr std::integral_constant<int, 3> kThree{};
-        kernel.Write(0, kThree, kThree);
+        BlockPoints<REAL> points;
+        points.Load(sums.block, 0, sums.points, kThree, kThree);
+        PatchKernel<NUM_DERIVATIVES, REAL>(sums).Write(points, 0, kThree, kThree);
         return;
     }
+    PatchKernel<NUM_DERIVATIVES, REAL> const kernel(sums);
     for (int first = 0; first < sums.size; first += kNumPointLanes) {
-        kernel.Write(first, std::min(kNumPointLanes, sums.size - first), sums.stride);
+        int const size = std::min(kNumPointLanes, sums.size - first);
+        BlockPoints<REAL> points;
+        points.Load(sums.block, 0, sums.points + first, size, sums.stride);
+        kernel.Write(points, first, size, sums.stride);
     }
 }
 

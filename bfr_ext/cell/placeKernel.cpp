@@ -18,12 +18,16 @@ bool hasAvx2() {
     __builtin_cpu_init();
     return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
 }
+
+bool hasAvx512() {
+    return hasAvx2() && __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl");
+}
 #endif
 
 template <typename REAL>
 Kernel<REAL> chooseKernel() {
 #ifdef OPENSUBDIVHEX_HAS_X86_KERNELS
-    if (hasAvx2() && __builtin_cpu_supports("avx512f")) {
+    if (hasAvx512()) {
         return SumUpPlacesAvx512;
     }
     if (hasAvx2()) {
@@ -36,6 +40,9 @@ Kernel<REAL> chooseKernel() {
 template <typename REAL>
 PatchKernel<REAL> choosePatchKernel() {
 #ifdef OPENSUBDIVHEX_HAS_X86_KERNELS
+    if (hasAvx512()) {
+        return SumUpPatchAvx512;
+    }
     if (hasAvx2()) {
         return SumUpPatchAvx2;
     }

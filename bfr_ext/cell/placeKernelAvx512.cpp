@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "patchSumsTemplate.h"
 #include "placeKernelTemplate.h"
 
 namespace OpenSubdivHex::BfrExt::internal {
@@ -10,5 +11,9 @@ void SumUpPlacesAvx512(PlaceMatrix<float> const &matrix, PlaceSums<float> const 
 void SumUpPlacesAvx512(PlaceMatrix<double> const &matrix, PlaceSums<double> const &sums) {
     sumUpPlaces<64>(matrix, sums);
 }
+
+void SumUpPatchAvx512(PatchSums<float> const &sums) { sumUpPatch(sums); }
+
+void SumUpPatchAvx512(PatchSums<double> const &sums) { sumUpPatch(sums); }
 
 } // namespace OpenSubdivHex::BfrExt::internal

@@ -53,51 +53,28 @@ std::vector<BfrPlace> selectPlaces(std::vector<BfrPlace> const &places, std::siz
 
 // Only quads have two inner rates.  Others have one, which follows from the number of places, as the place does if it
 // is one.  The first place of a quad is one segment inside of the corner.
-BfrInnerPlaces::BfrInnerPlaces(Bfr::Tessellation const &tessellation)
-    : _tessellation(tessellation), _size(std::size_t(tessellation.GetNumInteriorCoords())) {
-    if (tessellation.GetParameterization().GetType() != Bfr::Parameterization::QUAD || _size <= 1) {
-        return;
-    }
-    if (tessellation.IsUniform()) {
-        _rates[0] = _rates[1] = tessellation.GetNumEdgeCoords(0) + 1;
-        return;
-    }
-    findCoords();
-    for (std::size_t i = 0; i < 2; ++i) {
-        _rates[i] = int(std::lround(1 / getCoord(0)[i]));
-    }
-}
-
-std::vector<BfrPlace> BfrInnerPlaces::Find(FaceShape shape, std::size_t begin, std::size_t end) {
-    // Coordinates are sums of some ten thousand steps at most.
-    constexpr double kTolerance = 1e-11;
-    findCoords();
-    std::vector<BfrPlace> places;
-    for (std::size_t i = begin; i < end; ++i) {
-        places.push_back(
-            FindBfrPlace(_tessellation.GetParameterization(), shape, getCoord(i), kTolerance));
-    }
-    return places;
-}
-
-Pair BfrInnerPlaces::getCoord(std::size_t place) const {
-    double const *const uv = &_coords[place * std::size_t(_tessellation.GetCoordStride())];
-    return {uv[0], uv[1]};
-}
-
-void BfrInnerPlaces::findCoords() {
-    if (_coords.empty()) {
-        _coords.resize(_size * std::size_t(_tessellation.GetCoordStride()));
-        _tessellation.GetInteriorCoords(_coords.data());
-    }
-}
-
 template <typename REAL>
 RateEvaluator<REAL>::RateEvaluator(Bfr::Tessellation const &tessellation,
                                    BorderEvaluator<REAL> &border, REAL *const results[3],
                                    std::ptrdiff_t resultStride)
     : _tessellation(tessellation), _border(border), _results{results[0], results[1], results[2]},
-      _resultStride(resultStride), _inner(tessellation) {}
+      _resultStride(resultStride), _numInner(std::size_t(tessellation.GetNumInteriorCoords())) {
+    bool const isQuad = tessellation.GetParameterization().GetType() == Bfr::Parameterization::QUAD;
+    for (std::size_t i = 0; isQuad && _numInner > 1 && i < 2; ++i) {
+        _innerRates[i] = tessellation.IsUniform() ? tessellation.GetNumEdgeCoords(0) + 1
+                                                  : int(std::lround(1 / getInnerCoord(0)[i]));
+    }
+}
+
+template <typename REAL>
+Pair RateEvaluator<REAL>::getInnerCoord(std::size_t place) {
+    auto const stride = std::size_t(_tessellation.GetCoordStride());
+    if (_innerCoords.empty()) {
+        _innerCoords.resize(_numInner * stride);
+        _tessellation.GetInteriorCoords(_innerCoords.data());
+    }
+    return {_innerCoords[place * stride], _innerCoords[place * stride + 1]};
+}
 
 template <typename REAL>
 void RateEvaluator<REAL>::Evaluate(CellType const &type, REAL const *points,
@@ -186,12 +163,11 @@ void RateEvaluator<REAL>::evaluateInside(Source const &source, PatternOf of) {
     bool const areDerivatives = of == PatternOf::RateDerivatives;
     forEachBlock<Matrices>(
         source.places.GetPatterns(), PatternTable::GetKind<REAL>(of),
-        std::array<int, 5>{getFaceKey(), int(source.child), int(_inner.GetSize()),
-                           _inner.GetRate(0), _inner.GetRate(1)},
-        _inner.GetSize(),
+        std::array<int, 5>{getFaceKey(), int(source.child), int(_numInner), _innerRates[0],
+                           _innerRates[1]},
+        _numInner,
         [&](std::size_t begin, std::size_t end) {
-            FaceShape const shape = getShape(source);
-            return makeInside(source, _inner.Find(shape, begin, end), shape, areDerivatives);
+            return makeInside(source, begin, end, areDerivatives);
         },
         [&](Matrices const &matrices, std::size_t begin) {
             sumUp(source, matrices, areDerivatives,
@@ -223,11 +199,19 @@ void RateEvaluator<REAL>::evaluateDerivativesOnEdge(Source const &source, int ed
         });
 }
 
-// The matrices of those places that the source has.
+// The matrices of those of the places [begin, end) inside that the source has.
 template <typename REAL>
 typename RateEvaluator<REAL>::Matrices
-RateEvaluator<REAL>::makeInside(Source const &source, std::vector<BfrPlace> const &places,
-                                FaceShape shape, bool hasDerivatives) {
+RateEvaluator<REAL>::makeInside(Source const &source, std::size_t begin, std::size_t end,
+                                bool hasDerivatives) {
+    // Coordinates are sums of some ten thousand steps at most.
+    constexpr double kTolerance = 1e-11;
+    FaceShape const shape = getShape(source);
+    std::vector<BfrPlace> places;
+    for (std::size_t i = begin; i < end; ++i) {
+        places.push_back(
+            FindBfrPlace(_tessellation.GetParameterization(), shape, getInnerCoord(i), kTolerance));
+    }
     if (!source.places.ringCell) {
         return {source.places.MakeMatrices(places, hasDerivatives), {}};
     }

@@ -12,28 +12,6 @@
 
 namespace OpenSubdivHex::BfrExt::internal {
 
-/// \brief The places inside of a face that a Bfr::Tessellation has.
-class BfrInnerPlaces {
-public:
-    explicit BfrInnerPlaces(Bfr::Tessellation const &tessellation);
-
-    std::size_t GetSize() const { return _size; }
-    /// By direction, the number of segments of a quad that has places inside; else 0.  With the number of places,
-    /// it tells all of them.
-    int GetRate(std::size_t direction) const { return _rates[direction]; }
-    /// Places [begin, end).
-    std::vector<BfrPlace> Find(FaceShape shape, std::size_t begin, std::size_t end);
-
-private:
-    Pair getCoord(std::size_t place) const;
-    void findCoords();
-
-    Bfr::Tessellation const &_tessellation;
-    std::size_t const _size;
-    int _rates[2] = {};
-    std::vector<double> _coords; // none until they are asked for
-};
-
 /// \brief Evaluates a Bfr::Tessellation, with rates of segments, of a base face that a BorderEvaluator has.
 ///
 /// BorderEvaluator makes the points on the border.  Other results have dense matrices: one for each pair of inner
@@ -67,8 +45,9 @@ private:
         std::vector<PlaceRun> runs; ///< none: all places in turn
     };
 
-    static Matrices makeInside(Source const &source, std::vector<BfrPlace> const &places,
-                               FaceShape shape, bool hasDerivatives);
+    Pair getInnerCoord(std::size_t place);
+    Matrices makeInside(Source const &source, std::size_t begin, std::size_t end,
+                        bool hasDerivatives);
     template <typename FUNCTION>
     void forEachEdge(FUNCTION const &function) const;
     void evaluateBorder(int edge, int rate, int first) const;
@@ -88,7 +67,11 @@ private:
     BorderEvaluator<REAL> &_border;
     REAL *const _results[3];
     std::ptrdiff_t const _resultStride;
-    BfrInnerPlaces _inner;
+    // The places inside.  By direction, the number of segments of a quad that has some; else 0.  With the number of
+    // places, it tells all of them.
+    std::size_t const _numInner;
+    int _innerRates[2] = {};
+    std::vector<double> _innerCoords; // none until they are asked for
 };
 
 extern template class RateEvaluator<float>;

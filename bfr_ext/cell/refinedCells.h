@@ -34,13 +34,9 @@ public:
     std::size_t GetFirstChild(std::size_t cell) {
         return _cells[cell].firstChild > 0 ? _cells[cell].firstChild : makeChildren(cell);
     }
-    /// \brief Writes the surface at a corner.
+    /// \brief Writes derivatives at a corner, which span the tangent plane as those by u and v do.
     ///
-    /// Cells whose types few are of have it from their children, so that few limit masks are needed.
-    void EvaluateCorner(std::size_t cell, int corner, double *p) {
-        findCorner(cell, corner).EvaluateCorner(corner, p);
-    }
-    /// Writes derivatives there, which span the tangent plane as those by u and v do.
+    /// Cells whose types few are of have them from their children, so that few limit masks are needed.
     void EvaluateCorner(std::size_t cell, int corner, double *du, double *dv) {
         findCorner(cell, corner).EvaluateCorner(corner, du, dv);
     }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "secondDerivatives.h"
 
-#include "latticePlaces.h"
+#include "halfCell.h"
 
 #include <algorithm>
 #include <cmath>
@@ -23,6 +23,73 @@ constexpr double kRowTolerance = 1e-9;
 
 double dotRows(Row const &a, Row const &b) {
     return std::inner_product(a.begin(), a.end(), b.begin(), 0.0);
+}
+
+std::vector<Pair> applyStep(CellType const &type, std::size_t child,
+                            std::vector<Pair> const &places) {
+    std::vector<Pair> result(places.size());
+    for (std::size_t i = 0; i < places.size(); ++i) {
+        type.GetChildren()[child].step.ForEachEntry(i, [&](std::size_t point, double weight) {
+            result[i][0] += weight * places[point][0];
+            result[i][1] += weight * places[point][1];
+        });
+    }
+    return result;
+}
+
+// Moves places so that the surface has its corners where HalfCell has them.
+void fitToCorners(CellType const &type, std::vector<Pair> &places) {
+    auto const find = [&](std::size_t corner) {
+        Row const &weights = type.GetCornerPoints()[corner];
+        Pair sum = {0, 0};
+        for (std::size_t i = 0; i < places.size(); ++i) {
+            sum = {sum[0] + weights[i] * places[i][0], sum[1] + weights[i] * places[i][1]};
+        }
+        return sum;
+    };
+    auto const subtract = [](Pair const &p, Pair const &q) -> Pair {
+        return {p[0] - q[0], p[1] - q[1]};
+    };
+    Pair const origin = find(0);
+    Pair const a = subtract(find(1), origin);
+    Pair const b = subtract(find(3), origin);
+    double const area = a[0] * b[1] - a[1] * b[0];
+    for (Pair &place : places) {
+        Pair const p = subtract(place, origin);
+        double const s = (p[0] * b[1] - p[1] * b[0]) / area;
+        double const t = (a[0] * p[1] - a[1] * p[0]) / area;
+        place = {s * HalfCell::kCorners[1][0] + t * HalfCell::kCorners[3][0],
+                 s * HalfCell::kCorners[1][1] + t * HalfCell::kCorners[3][1]};
+    }
+}
+
+// Where the points of a half cell lie in a regular lattice, by the coordinates of HalfCell: the surface and steps keep
+// linear functions of these places.  Step after step all else shrinks by 2 against them, from any start.  Empty where
+// a step does not keep places.
+std::vector<Pair> findLatticePlaces(CellType const &type) {
+    constexpr double kTolerance = 1e-9;
+    if (type.GetKind() != FarExt::internal::CellKind::Half || !type.IsRegular()) {
+        return {};
+    }
+    CellType::Corner const &corner = type.GetCorners()[0];
+    std::vector<Pair> places;
+    for (std::size_t i = 0; i < corner.point.size(); ++i) {
+        places.push_back({corner.derivatives[0][i], corner.derivatives[1][i]});
+    }
+    for (int round = 0; round < kNumRounds; ++round) {
+        places = applyStep(type, 0, places);
+        fitToCorners(type, places);
+    }
+    for (std::size_t child = 0; child < std::size(HalfCell::kChildren); ++child) {
+        std::vector<Pair> const behindStep = applyStep(type, child, places);
+        for (std::size_t i = 0; i < places.size(); ++i) {
+            auto const [x, h] = HalfCell::kChildren[child].Apply(behindStep[i]);
+            if (!(std::hypot(x - places[i][0], h - places[i][1]) < kTolerance)) {
+                return {};
+            }
+        }
+    }
+    return places;
 }
 
 // A quadratic function of the coordinates of HalfCell.
@@ -50,11 +117,10 @@ struct Quadratic {
 };
 
 // Functions that span all quadratic ones, orthogonal and of length 1 as vectors of what they are at the points.
-std::vector<Quadratic> findQuadratics(std::vector<Pair> const &latticePlaces) {
+std::vector<Quadratic> findQuadratics(std::vector<Pair> const &places) {
     std::vector<Quadratic> quadratics = {{{}, {0, 0, 0}}, {{}, {0, 0, 0}}, {{}, {0, 0, 0}},
                                          {{}, {2, 0, 0}}, {{}, {0, 1, 0}}, {{}, {0, 0, 2}}};
-    for (Pair const &place : latticePlaces) {
-        auto const [x, h] = FromLattice(place);
+    for (auto const &[x, h] : places) {
         double const terms[] = {1, x, h, x * x, x * h, h * h};
         for (std::size_t i = 0; i < quadratics.size(); ++i) {
             quadratics[i].atPoints.push_back(terms[i]);
@@ -121,7 +187,7 @@ SecondDerivatives::Rows SecondDerivatives::ChangeCoordinates(Pair const (&map)[2
 
 SecondDerivatives::SecondDerivatives(CellType const &type) {
     std::vector<Pair> const places =
-        type.HasContinuousCurvature() ? FindLatticePlaces(type) : std::vector<Pair>();
+        type.HasContinuousCurvature() ? findLatticePlaces(type) : std::vector<Pair>();
     if (places.empty()) {
         return;
     }

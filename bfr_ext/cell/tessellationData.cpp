@@ -18,27 +18,6 @@ namespace {
 
 constexpr int kInvalid = OpenSubdiv::Far::INDEX_INVALID;
 
-// Others are mostly those of one face, so that what is made for them is not used again.
-constexpr int kMaxCellsOfPlan = 128;
-
-// The last level of the long edge of half a polygon.
-constexpr int kLastEdgeLevel = Polyline::kLastLevel + 1;
-
-// By edge, the level of which it has the polyline; -1: none.
-std::vector<int> findEdgeLevels(std::vector<Polyline> const &edges) {
-    std::vector<int> levels;
-    levels.reserve(edges.size());
-    for (Polyline const &edge : edges) {
-        // Levels 0 and 1 give an edge the same.
-        int level = 0;
-        while (level <= kLastEdgeLevel && Polyline(level).GetNumPoints() < edge.GetNumPoints()) {
-            ++level;
-        }
-        levels.push_back(level <= kLastEdgeLevel && Polyline(level) == edge ? level : -1);
-    }
-    return levels;
-}
-
 // Cuts convex polygons, with vertices in straight lines, into triangles that all have an area: n corners take
 // O(n log n) steps.
 class Triangulator {
@@ -191,12 +170,8 @@ bool TessellationData::SetTree(CellTree const &cells, Polyline const edges[],
     }
     parameterization = Parameterization(cells.GetFaceShape());
     CellMesh const mesh(cells, polylines.data());
-    std::vector<int> edgeLevels = findEdgeLevels(polylines);
-    tree = Tree{cells, std::move(polylines), std::move(edgeLevels), {}};
-    if (cells.GetNumCells() <= kMaxCellsOfPlan) {
-        _cellPlans = std::make_unique<CellPlans>();
-    }
-    return setCells(mesh, mesh.GetFaceVertices());
+    placeLevels = PlaceLevels(cells, polylines);
+    return setFace(mesh);
 }
 
 bool TessellationData::SetSection(FaceSections const &sections, int number,
@@ -206,7 +181,8 @@ bool TessellationData::SetSection(FaceSections const &sections, int number,
     }
     int const size = sections.GetFaceShape().size;
     parameterization = Parameterization(sections.GetFaceShape());
-    section = Section{number, sections.GetNumSections(), {}};
+    section = number;
+    numSections = sections.GetNumSections();
     CellShape shape = {};
     CellTree cells = sections.MakeTree(number, &shape);
     std::vector<CellMesh::Vertex> polygon;
@@ -226,17 +202,7 @@ bool TessellationData::SetSection(FaceSections const &sections, int number,
     }
     CellMesh const mesh(cells, edges.data(), shape);
     levels = sections.GetLevels();
-    if (levels.empty()) {
-        // Points on the other edges are made as those of the face, too.
-        std::vector<Polyline> ofFace;
-        ofFace.reserve(edges.size());
-        for (int edge = 0; edge < size; ++edge) {
-            ofFace.push_back(sections.GetEdge(edge));
-        }
-        tree = Tree{cells, std::move(edges), findEdgeLevels(ofFace), {}};
-    } else {
-        _cellPlans = std::make_unique<CellPlans>();
-    }
+    placeLevels = sections.GetPlaceLevels();
     bool const areSet = setCells(mesh, polygon);
     for (std::size_t i = 0; i < polygon.size(); ++i) {
         EdgePlace<int> const onEdge = sections.FindEdge(polygon[i]);
@@ -244,7 +210,7 @@ bool TessellationData::SetSection(FaceSections const &sections, int number,
             int const first = firstEdgeCoords[i];
             int const before = onEdge.end == 0 ? 0 : 1 + sections.CountPointsBefore(onEdge);
             int const count = isOnEdge(i) ? firstEdgeCoords[i + 1] - first : 1;
-            section->border.push_back({onEdge.edge, before - 1, count, first});
+            border.push_back({onEdge.edge, before - 1, count, first, false});
         }
     }
     return areSet;
@@ -285,45 +251,19 @@ bool TessellationData::SetLevels(Parameterization const &ofFace, int numLevels, 
     if (areTooMany(2 * (FaceSections::CountLeaves(shape, levels.back()) - 1))) {
         return false;
     }
-    std::vector<Polyline> edges;
-    edges.reserve(std::size_t(size));
-    for (int edge = 0; edge < size; ++edge) {
-        edges.emplace_back(GetEdgeLevel(std::size_t(edge)));
-    }
-    _cellPlans = std::make_unique<CellPlans>();
+    placeLevels = PlaceLevels({shape, levels});
+    std::vector<Polyline> const edges(placeLevels.ofEdges.begin(), placeLevels.ofEdges.end());
     CellTree const cells(shape, levels.data(), levels.back());
     CellMesh const mesh(cells, edges.data());
-    return setCells(mesh, mesh.GetFaceVertices());
-}
-
-// The highest of the places that a plan has.
-int TessellationData::getLevelOfPlaces(bool isOfDerivatives) const {
-    if (!tree) {
-        return isOfDerivatives ? *std::max_element(levels.begin(), levels.end()) : levels.back();
-    }
-    int level = tree->cells.GetMaxLevel();
-    for (Polyline const &edge : tree->edges) {
-        // Places of a level are multiples of that of its first one.
-        for (int const place : edge.GetPlaces()) {
-            while (isOfDerivatives && place % (Polyline::kLength >> level) != 0) {
-                ++level;
-            }
-        }
-    }
-    return level;
+    return setFace(mesh);
 }
 
 CellPlan const &TessellationData::GetCellPlan(bool isInLattice, bool isOfDerivatives) const {
     std::size_t const kind[2] = {isInLattice ? 1U : 0U, isOfDerivatives ? 1U : 0U};
-    std::unique_ptr<CellPlan const> &plan = _cellPlans->plans[kind[0]][kind[1]];
-    std::call_once(_cellPlans->once[kind[0]][kind[1]], [&] {
-        std::vector<LeafPlaces::Place> leafPlaces;
-        leafPlaces.reserve(places.size());
-        for (SectorCoords const &place : places) {
-            leafPlaces.push_back({place.sector, {place.start, place.end}});
-        }
+    std::unique_ptr<CellPlan const> &plan = _plans[kind[0]][kind[1]];
+    std::call_once(_oncePlans[kind[0]][kind[1]], [&] {
         plan = std::make_unique<CellPlan const>(
-            GetFaceShape(), getLevelOfPlaces(isOfDerivatives), leafPlaces,
+            GetFaceShape(), isOfDerivatives ? placeLevels.ofAll : placeLevels.ofInside, places,
             isOfDerivatives ? CellPlan::Use::Derivatives : CellPlan::Use::Points, isInLattice);
     });
     return *plan;
@@ -339,18 +279,12 @@ std::vector<int> TessellationData::setPlaces(CellMesh const &mesh, std::vector<i
     for (std::size_t place = 0; place < order.size(); ++place) {
         CellMesh::Vertex const &vert = verts[std::size_t(order[place])];
         ofVertices[std::size_t(order[place])] = int(place);
-        double const start = std::ldexp(double(vert.a), -CellShape::kBits);
-        double const end = std::ldexp(double(vert.b), -CellShape::kBits);
-        Pair const coordsOfPlace =
-            FarExt::internal::FindFaceCoords(parameterization, polygon, vert.sector, {start, end});
+        Pair const inSector = {std::ldexp(double(vert.a), -CellShape::kBits),
+                               std::ldexp(double(vert.b), -CellShape::kBits)};
+        Pair const coordsOfPlace = FarExt::internal::FindFaceCoords(
+            parameterization, polygon, vert.sector, {inSector[0], inSector[1]});
         std::copy(coordsOfPlace.begin(), coordsOfPlace.end(), &coords[2 * place]);
-        places.push_back({vert.sector, start, end});
-        if (tree && vert.cell >= 0) {
-            tree->corners.push_back({vert.cell, vert.corner, int(place)});
-        }
-    }
-    if (tree) {
-        sortByCell(tree->corners);
+        places.push_back({vert.sector, inSector});
     }
     return ofVertices;
 }
@@ -366,34 +300,13 @@ std::vector<BfrPlace> const &TessellationData::GetBfrPlaces() const {
     return _bfrPlaces;
 }
 
-void TessellationData::sortByCell(std::vector<CellCorner> &corners) {
-    std::sort(corners.begin(), corners.end(), [](CellCorner const &a, CellCorner const &b) {
-        return a.cell != b.cell ? a.cell < b.cell : a.corner < b.corner;
-    });
-}
-
-std::vector<TessellationData::CellCorner> TessellationData::FindCornersOfDerivatives() const {
-    CellTree const &cells = tree->cells;
-    std::vector<CellCorner> corners;
-    corners.reserve(places.size());
-    for (std::size_t place = 0; place < places.size(); ++place) {
-        int const sector = places[place].sector;
-        Pair inCell = {places[place].start, places[place].end};
-        int cell = 0;
-        FaceShape shape = GetFaceShape(); // of size 0: of a half cell
-        int corner = -1;
-        while ((corner = FindCellCorner(shape, sector, inCell)) < 0 && cells.IsRefined(cell)) {
-            CellStep const step = FindCellStep(shape, sector, inCell);
-            inCell = step.map->Apply(inCell); // without rounding
-            cell = cells.GetFirstChild(cell) + int(step.child);
-            shape = step.isChildWhole ? shape : FaceShape();
-        }
-        if (corner >= 0) {
-            corners.push_back({cell, corner, int(place)});
-        }
+bool TessellationData::setFace(CellMesh const &mesh) {
+    bool const areSet = setCells(mesh, mesh.GetFaceVertices());
+    for (int edge = 0; edge < GetFaceSize(); ++edge) {
+        int const first = firstEdgeCoords[std::size_t(edge)];
+        border.push_back({edge, -1, firstEdgeCoords[std::size_t(edge) + 1] - first, first, true});
     }
-    sortByCell(corners);
-    return corners;
+    return areSet;
 }
 
 // Sets the places of a polygon: of the face, or of a section, beside which the mesh has more.
@@ -418,8 +331,8 @@ bool TessellationData::setCells(CellMesh const &mesh,
         }
     }
     firstEdgeCoords.push_back(int(order.size()));
-    std::vector<bool> isInside(mesh.GetVertices().size(), !section);
-    if (section) {
+    std::vector<bool> isInside(mesh.GetVertices().size(), numSections == 1);
+    if (numSections > 1) {
         mesh.ForEachCell([&](CellMesh::Polygon &cell) {
             for (int const vert : cell.verts) {
                 isInside[std::size_t(vert)] = true;
@@ -437,23 +350,18 @@ bool TessellationData::setCells(CellMesh const &mesh,
     return setFacets(mesh, setPlaces(mesh, order));
 }
 
-// All places in a face that is a regular polygon.
+// All places in a face that is a regular polygon, or half of one.
 std::vector<double> TessellationData::findRegularCoords() const {
-    std::vector<double> result;
-    result.reserve(coords.size());
-    double const unit = 2 * FarExt::internal::kPi / GetFaceSize();
+    std::vector<double> result(2 * places.size());
     FarExt::internal::BasePolygon const polygon(GetFaceShape());
-    for (SectorCoords const &place : places) {
-        if (GetFaceShape().isHalf) {
-            Pair uv;
-            polygon.Write(place.sector, {place.start, place.end}, uv.data());
-            result.insert(result.end(), uv.begin(), uv.end());
-            continue;
+    double *uv = result.data();
+    for (auto const &[sector, inSector] : places) {
+        polygon.Write(sector, {inSector[0], inSector[1]}, uv);
+        if (GetFaceShape() == FaceShape(3)) { // from the right-angled triangle
+            uv[0] += uv[1] / 2;
+            uv[1] *= std::sqrt(0.75);
         }
-        double const start = unit * place.sector;
-        double const end = unit * (place.sector + 1);
-        result.push_back(place.start * std::cos(start) + place.end * std::cos(end));
-        result.push_back(place.start * std::sin(start) + place.end * std::sin(end));
+        uv += 2;
     }
     return result;
 }

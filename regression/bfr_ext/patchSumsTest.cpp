@@ -185,6 +185,12 @@ void expectSumsOfKernels(double tolerance) {
         SCOPED_TRACE("portable");
         expectSums<NUM_DERIVATIVES, REAL>(Kernel(SumUpPatchPortable), tolerance);
     }
+#if defined(__x86_64__) && defined(__GNUC__)
+    if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) {
+        SCOPED_TRACE("AVX2");
+        expectSums<NUM_DERIVATIVES, REAL>(Kernel(SumUpPatchAvx2), tolerance);
+    }
+#endif
     {
         SCOPED_TRACE("of the machine");
         expectSums<NUM_DERIVATIVES, REAL>(Kernel(SumUpPatch), tolerance);

@@ -128,7 +128,7 @@ std::vector<Kernel<REAL>> getKernels() {
     if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) {
         kernels.push_back({SumUpPlacesAvx2, true});
     }
-    if (__builtin_cpu_supports("avx512f")) {
+    if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl")) {
         kernels.push_back({SumUpPlacesAvx512, true});
     }
 #endif

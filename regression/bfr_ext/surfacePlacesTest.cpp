@@ -378,7 +378,7 @@ TEST(SurfacePlaces, NearSharpFeaturesHaveALevelOfTheirOwn) {
     EXPECT_LT(errors[1].largest, 0.5 * errors[0].largest);
     auto const refiner = CreateRefiner(shape, ReferenceMask::Smooth, 0, getOptions());
     auto const coarse = SurfaceFactory::Create(*refiner, getLevels(2));
-    auto const factory = coarse->CreateWith(getLevels(5));
+    auto const factory = SurfaceFactory::Create(*refiner, getLevels(5));
     int numSharp = 0;
     for (int face = 0; face < shape.GetNumFaces(); ++face) {
         PlacedSurface surfaces[2];
@@ -461,6 +461,45 @@ TEST(SurfacePlaces, OfAnySizeAndStride) {
             EXPECT_TRUE(std::equal(first[0], first[0] + size, expected[0]));
             surface.Evaluate(uv, points.data(), {size, stride}, first[0], first[1], first[2]);
             EXPECT_TRUE(std::equal(first[1], first[1] + size, expected[1]));
+        }
+    }
+}
+
+// What single precision leaves out is no more than rounding, and weights have the sum 1.
+TEST(SurfacePlaces, OfSinglePrecisionDifferByRounding) {
+    std::mt19937 random(3);
+    std::uniform_real_distribution<float> uniform(-1, 1);
+    for (TorusFaces const faces :
+         {TorusFaces::Quads, TorusFaces::Triangles, TorusFaces::IrregularTriangles}) {
+        Shape const shape = MakeTorus(8, 6, faces);
+        auto const refiner = CreateRefiner(shape, ReferenceMask::Smooth, 0, getOptions());
+        auto const factory = SurfaceFactory::Create(*refiner);
+        std::vector<float> data(shape.positions.size());
+        for (std::size_t i = 0; i < data.size(); ++i) {
+            data[i] = i % 3 == 0 ? 1 : uniform(random);
+        }
+        std::vector<double> const sameData(data.begin(), data.end());
+        for (int face = 0; face < shape.GetNumFaces(); ++face) {
+            PlacedSurface exact;
+            ASSERT_TRUE(exact.Init(*factory, sameData, face));
+            Surface<float> surface;
+            ASSERT_TRUE(factory->InitVertexSurface(face, &surface));
+            std::vector<float> points(exact.points.size());
+            surface.PreparePatchPoints(data.data(), 3, points.data(), 3);
+            for (Uv const &uv : findPlaces(surface.GetFaceSize(), 20)) {
+                float const sameUv[2] = {float(uv[0]), float(uv[1])};
+                float p[3];
+                float du[3];
+                float dv[3];
+                surface.Evaluate(sameUv, points.data(), 3, p, du, dv);
+                std::array<Vector3, 6> const expected = exact.Evaluate({sameUv[0], sameUv[1]});
+                EXPECT_NEAR(p[0], 1, 1e-6);
+                for (std::size_t k = 0; k < 3; ++k) {
+                    EXPECT_NEAR(p[k], expected[0][k], 8e-6);
+                    EXPECT_NEAR(du[k], expected[1][k], 2e-4);
+                    EXPECT_NEAR(dv[k], expected[2][k], 2e-4);
+                }
+            }
         }
     }
 }

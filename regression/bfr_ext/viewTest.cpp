@@ -278,9 +278,6 @@ TEST(View, RefinesNothingWhereItIsInvalid) {
         EXPECT_EQ(tree.GetNumCells(), 1);
         EXPECT_EQ(visibility, std::vector<CellVisibility>{CellVisibility::Visible});
         EXPECT_EQ(view.MakeEdge(surface, 1, control.data(), 3), Polyline());
-        std::vector<int> levels(5, 9);
-        EXPECT_EQ(view.FindLevels(surface, control.data(), 3, levels.data()), 5);
-        EXPECT_EQ(levels, std::vector<int>(5));
         View::Counts counts;
         FarExt::CallStatus status;
         CellForest const forest =
@@ -425,15 +422,6 @@ TEST(View, SidesAreAsShortAsIsAskedFor) {
                 }
             }
         });
-        std::vector<int> levels(5);
-        ASSERT_EQ(view.FindLevels(surface, control.data(), 3, levels.data()), 5);
-        EXPECT_EQ(levels[4], tree.GetMaxLevel());
-        for (int edge = 0; edge < 4; ++edge) {
-            EXPECT_TRUE(Polyline(levels[std::size_t(edge)]).Contains(tree.GetEdgePolyline(edge)));
-            EXPECT_FALSE(
-                levels[std::size_t(edge)] > 2 &&
-                Polyline(levels[std::size_t(edge)] - 2).Contains(tree.GetEdgePolyline(edge)));
-        }
     }
 }
 

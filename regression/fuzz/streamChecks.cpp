@@ -130,8 +130,8 @@ StreamedPlaces<REAL> runStream(MeshSurfaces<REAL> const &mesh, SOURCE const &sou
         options.SetMaxMemory(std::size_t(1) << dice.Roll(24));
     }
     BfrExt::SurfaceFactoryCache cache(std::size_t(1) << (dice.IsOneOf(2) ? 30 : dice.Roll(20)));
-    auto const factory =
-        mesh.factory->CreateWith(BfrExt::SurfaceFactory::Options().SetExternalCache(&cache));
+    auto const factory = BfrExt::SurfaceFactory::Create(
+        mesh.factory->GetMesh(), BfrExt::SurfaceFactory::Options().SetExternalCache(&cache));
     FarExt::ExecutorScope const scope(nullptr, 1 + dice.Roll(3));
     PatchStream<REAL> const stream(*factory, source, options);
     return StreamRun<REAL>(mesh, stream).Run(values);
