@@ -124,13 +124,7 @@ public:
 
     BaseType const &GetType() const { return _face->type; }
     FaceShape GetShape() const { return GetType().GetShape(_face->size); }
-    void SetCells(RefinedCells &cells) const {
-        if (PlainFaceType const *const plain = GetType().GetPlain()) {
-            cells.SetBase(*plain, _points.data(), 3);
-        } else {
-            cells.SetBase(*GetType(), _points.data(), 3);
-        }
-    }
+    void SetCells(RefinedCells &cells) const { cells.SetBase(GetType(), _points.data(), 3); }
     void Sample(CellGrid &grid, std::vector<double> &samples) const {
         grid.Sample(GetType(), _points.data(), samples);
     }
@@ -147,7 +141,7 @@ public:
             auto const first = _points.begin() + 3 * std::ptrdiff_t(point);
             points.insert(points.end(), first, first + 3);
         }
-        values.SetBase(*item.type, points.data(), 3);
+        values.SetBase(BaseType(*item.type), points.data(), 3);
         return item;
     }
 

@@ -71,9 +71,18 @@ BasePoint MakeBasePoint(POLYGON const &polygon, int sector, Pair const &coords) 
     auto const &[a, b] = polygon.GetSectorMap(sector);
     return {sector, coords, {a, b}};
 }
-inline BasePoint MakeBasePoint(FaceShape shape, int sector, Pair const &coords) {
-    return FarExt::internal::UsePolygon(
+/// Overload for a whole cell some steps from the face on.
+inline BasePoint MakeBasePoint(FaceShape shape, int sector, Pair const &coords, int numSteps = 0) {
+    BasePoint point = FarExt::internal::UsePolygon(
         shape, [&](auto const &polygon) { return MakeBasePoint(polygon, sector, coords); });
+    for (Pair &toCoord : point.toCoords) {
+        toCoord = {std::ldexp(toCoord[0], numSteps), std::ldexp(toCoord[1], numSteps)};
+    }
+    return point;
+}
+/// A corner of a whole cell some steps from the face on, in its own sector, whatever the coordinates there.
+inline BasePoint MakeCornerPoint(FaceShape shape, int corner, int numSteps) {
+    return MakeBasePoint(shape, shape.GetSectorOfCorner(corner), {}, numSteps);
 }
 
 /// \brief Finds a point of the plane of a base face, or where the line from the

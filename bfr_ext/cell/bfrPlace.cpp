@@ -34,7 +34,6 @@ BfrPlace MakeBfrEdgePlace(Bfr::Parameterization const &parameterization, FaceSha
 
 BfrPlace MoveToChild(BfrPlace const &place, CellStep const &step, FaceShape shape) {
     Pair const coords = step.Apply(place.point.coords);
-    auto const &rows = step.map->rows;
     if (step.isChildWhole) {
         // By its own u and v, in which it is twice as large.
         Pair const &u = place.toOwn[0];
@@ -44,16 +43,8 @@ BfrPlace MoveToChild(BfrPlace const &place, CellStep const &step, FaceShape shap
                 {}};
     }
     BfrPlace result = {{0, coords, {{1, 0}, {0, 1}}}, {}, {}};
-    for (std::size_t k = 0; k < 2; ++k) {
-        Pair ofSector = {};
-        for (std::size_t i = 0; i < 2; ++i) {
-            Pair const &toCoords = place.point.toCoords[i];
-            ofSector[i] = toCoords[0] * place.toOwn[0][k] + toCoords[1] * place.toOwn[1][k];
-        }
-        for (std::size_t i = 0; i < 2; ++i) {
-            result.toOwn[i][k] = rows[i][0] * ofSector[0] + rows[i][1] * ofSector[1];
-        }
-    }
+    Multiply(place.point.toCoords, place.toOwn, result.toOwn);
+    Multiply(step.map->rows, result.toOwn, result.toOwn);
     return result;
 }
 

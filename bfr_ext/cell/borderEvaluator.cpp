@@ -7,30 +7,12 @@ namespace OpenSubdivHex::BfrExt::internal {
 
 namespace {
 
-// Finds what the sources of an edge weigh at its places.
-class WeightFinder {
-public:
-    WeightFinder(CellType const &type, RingCell const *cell)
-        : _type(type), _cell(cell),
-          _of(cell && cell->IsInner() ? StencilOf::Step : StencilOf::Points) {}
-
-    // Valid until the next call.
-    std::vector<double> const &Find(double point) {
-        _stencil.Find(_type, point, _of);
-        if (!_cell) {
-            return _stencil.GetWeights();
-        }
-        _cell->GetPlaces().Order(_stencil.GetWeights(), _ordered);
-        return _ordered;
-    }
-
-private:
-    CellType const &_type;
-    RingCell const *const _cell;
-    StencilOf const _of;
-    BorderStencil _stencil;
-    std::vector<double> _ordered;
-};
+// Finds what the sources of an edge weigh at a place.
+std::vector<double> findWeights(CellType const &type, RingCell const *cell, double point) {
+    std::vector<double> weights =
+        FindBorderStencil(type, point, cell ? cell->GetSources() : StencilOf::Points);
+    return cell ? cell->GetPlaces().Order(weights) : weights;
+}
 
 // The places inside of an edge of a level, from its start on; they are the same from its end.
 std::vector<double> makeEdgePoints(int level) {
@@ -110,8 +92,11 @@ void BorderEvaluator<REAL>::evaluateVertex(std::size_t vert, REAL *result) {
                           _points->GetSources(item.points.size(), item.points.data()));
         _vertexValues.EvaluateVertex(*item.rings->cell, 0, result);
     } else {
-        SumUpPlaces(findVertex(*item.type), {_points->Get(), _points->GetStride(), GetSize(),
-                                             item.points.data(), result, 0});
+        CellType const &type = *item.type;
+        PlaceMatrix<REAL> const &matrix = find(type.GetPatterns(), PatternOf::Border, 0, _vertex,
+                                               [&] { return makeMatrix(type, nullptr, {0}); });
+        SumUpPlaces(matrix, {_points->Get(), _points->GetStride(), GetSize(), item.points.data(),
+                             result, 0});
     }
 }
 
@@ -195,32 +180,32 @@ void BorderEvaluator<REAL>::EvaluateRate(std::size_t edge, int rate, REAL *resul
     evaluateInside(edge, true, rate, results, stride);
 }
 
-// The matrix of a level, or of a rate.
+// Finds the matrix with a number, such as a level or a rate.
 template <typename REAL>
-PlaceMatrix<REAL> const &BorderEvaluator<REAL>::findPlaces(bool isRate, int level) {
-    PatternTable *const patterns = &getPatterns(*_edge.type, _edge.cell);
-    PatternOf const of = isRate ? PatternOf::BorderRate : PatternOf::Border;
-    if (_places.patterns == patterns && _places.of == of && _places.level == level) {
-        return *_places.matrix;
+template <typename MAKE>
+PlaceMatrix<REAL> const &BorderEvaluator<REAL>::find(PatternTable &patterns, PatternOf of,
+                                                     int number, Found &last, MAKE const &make) {
+    if (last.patterns != &patterns || last.of != of || last.number != number) {
+        int const kind = PatternTable::GetKind<REAL>(of);
+        last = {&patterns, of, number,
+                &patterns.Get<PlaceMatrix<REAL>>(kind, &number, &number + 1, make)};
     }
-    auto const make = [&] {
-        return makeMatrix(*_edge.type, _edge.cell,
-                          isRate ? makeRatePoints(level) : makeEdgePoints(level));
-    };
-    if (isRate && level > kMaxKeptRate) {
-        return _placeMatrix = make();
-    }
-    _places = {patterns, of, level,
-               &patterns->Get<PlaceMatrix<REAL>>(PatternTable::GetKind<REAL>(of), &level,
-                                                 &level + 1, make)};
-    return *_places.matrix;
+    return *last.matrix;
 }
 
 template <typename REAL>
 void BorderEvaluator<REAL>::evaluateInside(std::size_t edge, bool isRate, int level, REAL *results,
                                            std::ptrdiff_t stride) {
     setEdge(edge);
-    PlaceMatrix<REAL> const &matrix = findPlaces(isRate, level);
+    auto const make = [&] {
+        return makeMatrix(*_edge.type, _edge.cell,
+                          isRate ? makeRatePoints(level) : makeEdgePoints(level));
+    };
+    bool const isKept = !isRate || level <= kMaxKeptRate;
+    PlaceMatrix<REAL> const &matrix =
+        isKept ? find(getPatterns(*_edge.type, _edge.cell),
+                      isRate ? PatternOf::BorderRate : PatternOf::Border, level, _places, make)
+               : _placeMatrix = make();
     auto const last = std::ptrdiff_t(matrix.GetNumPlaces()) - 1;
     sumUp(matrix, _isReversed ? results + last * stride : results, _isReversed ? -stride : stride);
 }
@@ -241,8 +226,7 @@ void BorderEvaluator<REAL>::EvaluateKeptPoint(std::size_t edge, Pair const &plac
         getPatterns(*_edge.type, _edge.cell)
             .template Get<std::vector<REAL>>(
                 PatternTable::GetKind<REAL>(PatternOf::BorderPlace), &key, &key + 1, [&] {
-                    std::vector<double> const stencil =
-                        WeightFinder(*_edge.type, _edge.cell).Find(point);
+                    std::vector<double> const stencil = findWeights(*_edge.type, _edge.cell, point);
                     return std::vector<REAL>(stencil.begin(), stencil.end());
                 });
     if (_placeMatrix.GetNumPoints() != weights.size()) {
@@ -257,25 +241,10 @@ PlaceMatrix<REAL> BorderEvaluator<REAL>::makeMatrix(CellType const &type, RingCe
                                                     std::vector<double> const &points) {
     PlaceMatrix<REAL> matrix(points.size(),
                              cell ? cell->GetColumns().size() : std::size_t(type.GetNumPoints()));
-    WeightFinder finder(type, cell);
     for (std::size_t place = 0; place < points.size(); ++place) {
-        matrix.Set(place, finder.Find(points[place]));
+        matrix.Set(place, findWeights(type, cell, points[place]));
     }
     return matrix;
-}
-
-template <typename REAL>
-PlaceMatrix<REAL> const &BorderEvaluator<REAL>::findVertex(CellType const &type) {
-    if (_vertex.patterns != &type.GetPatterns()) {
-        _vertex.patterns = &type.GetPatterns();
-        _vertex.matrix = &type.GetPatterns().template Get<PlaceMatrix<REAL>>(
-            PatternTable::GetKind<REAL>(PatternOf::Border), nullptr, nullptr, [&] {
-                PlaceMatrix<REAL> matrix(1, std::size_t(type.GetNumPoints()));
-                matrix.Set(0, type.GetCornerPoints()[0]);
-                return matrix;
-            });
-    }
-    return *_vertex.matrix;
 }
 
 template class BorderEvaluator<float>;

@@ -59,13 +59,22 @@ private:
         int const *indices;
     };
 
+    // A matrix that was found.
+    struct Found {
+        PatternTable *patterns;
+        PatternOf of;
+        int number;
+        PlaceMatrix<REAL> const *matrix;
+    };
+
     static PlaceMatrix<REAL> makeMatrix(CellType const &type, RingCell const *cell,
                                         std::vector<double> const &points);
     static PatternTable &getPatterns(CellType const &type, RingCell const *cell) {
         return cell ? cell->GetPatterns() : type.GetPatterns();
     }
-    PlaceMatrix<REAL> const &findPlaces(bool isRate, int level);
-    PlaceMatrix<REAL> const &findVertex(CellType const &type);
+    template <typename MAKE>
+    PlaceMatrix<REAL> const &find(PatternTable &patterns, PatternOf of, int number, Found &last,
+                                  MAKE const &make);
     void evaluateInside(std::size_t edge, bool isRate, int level, REAL *results,
                         std::ptrdiff_t stride);
     CellType::BorderItem const &getItem(std::size_t item);
@@ -95,12 +104,6 @@ private:
     std::uint64_t _typeNumber = 0;
     std::vector<KnownItem> _items;
     // The matrices of the edge and of the vertex that were last asked for: mostly others of the type are alike.
-    struct Found {
-        PatternTable *patterns;
-        PatternOf of;
-        int level;
-        PlaceMatrix<REAL> const *matrix;
-    };
     Found _places = {};
     Found _vertex = {};
     PlaceMatrix<REAL> _placeMatrix; // that is not kept with the type

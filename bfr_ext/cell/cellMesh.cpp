@@ -1,35 +1,27 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cellMesh.h"
 
-#include "far_ext/vtr/hash.h"
-
 #include <algorithm>
 #include <map>
 
 namespace OpenSubdivHex::BfrExt::internal {
 
-std::size_t CellMesh::Hash::operator()(std::array<std::int32_t, 3> const &key) const {
-    std::uint64_t hash = std::uint64_t(key[0]);
-    for (std::size_t i = 1; i < 3; ++i) {
-        hash = FarExt::internal::AddToHash(hash, std::uint64_t(key[i]));
-    }
-    return std::size_t(hash);
-}
-
-std::array<std::int32_t, 3> CellMesh::getKey(int sector, Place const &place) const {
-    SectorPlace<Place> const name = NameOf(_shape, SectorPlace<Place>{sector, place});
-    return {name.sector, name.coords[0], name.coords[1]};
+// Coordinates of names are not below zero.
+std::uint64_t CellMesh::getKey(SectorPlace<Place> const &name) {
+    static_assert(CellShape::kBits < 20);
+    return std::uint64_t(name.sector) << 40 | std::uint64_t(name.coords[0]) << 20 |
+           std::uint64_t(name.coords[1]);
 }
 
 int CellMesh::Find(int sector, Place const &place) const {
-    auto const found = _numbers.find(getKey(sector, place));
+    auto const found = _numbers.find(getKey(NameOf(_shape, SectorPlace<Place>{sector, place})));
     return found == _numbers.end() ? -1 : found->second;
 }
 
 void CellMesh::add(SectorPlace<Place> const &place) {
-    std::array<std::int32_t, 3> const key = getKey(place.sector, place.coords);
-    if (_numbers.emplace(key, int(_verts.size())).second) {
-        _verts.push_back({int(key[0]), key[1], key[2]});
+    SectorPlace<Place> const name = NameOf(_shape, place);
+    if (_numbers.emplace(getKey(name), int(_verts.size())).second) {
+        _verts.push_back({name.sector, name.coords[0], name.coords[1]});
     }
 }
 

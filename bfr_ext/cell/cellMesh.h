@@ -58,11 +58,7 @@ public:
     std::vector<Polygon> GetMergedPolygons() const;
 
 private:
-    struct Hash {
-        std::size_t operator()(std::array<std::int32_t, 3> const &key) const;
-    };
-
-    std::array<std::int32_t, 3> getKey(int sector, Place const &place) const;
+    static std::uint64_t getKey(SectorPlace<Place> const &name);
     void add(SectorPlace<Place> const &place);
     template <typename FUNCTION>
     void visit(CellShape const &cell, int level, FUNCTION const &function) const;
@@ -75,7 +71,7 @@ private:
     int const _maxLevel;
     CellShape const _section;
     std::vector<Vertex> _verts;
-    std::unordered_map<std::array<std::int32_t, 3>, int, Hash> _numbers;
+    std::unordered_map<std::uint64_t, int> _numbers;
 };
 
 } // namespace OpenSubdivHex::BfrExt::internal

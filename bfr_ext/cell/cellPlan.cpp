@@ -153,10 +153,8 @@ CellPlan::CellPlan(CellPlan const &plan, Node const &leaf)
             LeafPlaces::Place const &place = (*leaf.leaf)[std::size_t(run.row) + std::size_t(i)];
             Pair toCoords[2] = {leaf.toCoords[0], leaf.toCoords[1]};
             if (leaf.isWhole) {
-                BasePoint const base = MakeBasePoint(_shape, place.sector, place.coords);
-                for (std::size_t k = 0; k < 4; ++k) {
-                    toCoords[k / 2][k % 2] = std::ldexp(base.toCoords[k / 2][k % 2], leaf.depth);
-                }
+                std::copy_n(MakeBasePoint(_shape, place.sector, place.coords, leaf.depth).toCoords,
+                            2, toCoords);
             }
             addPlace(place, toCoords, run.place + i);
         }
@@ -181,11 +179,7 @@ void CellPlan::addPlace(LeafPlaces::Place place, Pair const (&toCoords)[2], int 
         CellStep const step =
             FindCellStep(_nodes[node].isWhole ? _shape : FaceShape(), place.sector, place.coords);
         place.coords = step.map->Apply(place.coords);
-        Pair const before[2] = {ofNode[0], ofNode[1]};
-        for (std::size_t k = 0; k < 4; ++k) {
-            ofNode[k / 2][k % 2] = step.map->rows[k / 2][0] * before[0][k % 2] +
-                                   step.map->rows[k / 2][1] * before[1][k % 2];
-        }
+        Multiply(step.map->rows, ofNode, ofNode);
         node = findChild(node, step, ofNode);
     }
     Node &leaf = _nodes[node];
@@ -215,12 +209,7 @@ bool CellPlan::addCorner(std::size_t node, LeafPlaces::Place const &place,
     CornerPlace result = {std::size_t(corner), number, {toCoords[0], toCoords[1]}};
     if (cell.isWhole) {
         // The corner has the coordinates of its own sector.
-        BasePoint const own = MakeBasePoint(_shape, _shape.GetSectorOfCorner(corner), {});
-        for (std::size_t i = 0; i < 2; ++i) {
-            for (std::size_t k = 0; k < 2; ++k) {
-                result.toCoords[i][k] = std::ldexp(own.toCoords[i][k], cell.depth);
-            }
-        }
+        std::copy_n(MakeCornerPoint(_shape, corner, cell.depth).toCoords, 2, result.toCoords);
     }
     cell.corners.push_back(result);
     return true;

@@ -136,12 +136,7 @@ void CellStencil::Place::AddDerivatives(std::size_t corner, double weight,
     Pair ofCorner[2] = {toCoords[0], toCoords[1]};
     if (type->IsWhole()) {
         // The corner has the coordinates of its own sector, larger by what the steps have made them.
-        BasePoint const point =
-            MakeBasePoint(type->GetShape(), type->GetShape().GetSectorOfCorner(int(corner)), {});
-        for (std::size_t i = 0; i < 2; ++i) {
-            ofCorner[i] = {std::ldexp(point.toCoords[i][0], depth),
-                           std::ldexp(point.toCoords[i][1], depth)};
-        }
+        std::copy_n(MakeCornerPoint(type->GetShape(), int(corner), depth).toCoords, 2, ofCorner);
     }
     for (std::size_t k = 0; k < 2; ++k) {
         add(byUv[k], weight * ofCorner[0][k], derivatives[0]);
@@ -163,18 +158,9 @@ CellStencil::Place CellStencil::begin(BasePoint const &point) {
 // To the child that has the point.
 void CellStencil::takeStep(Place &place) {
     CellStep const step = FindCellStep(place.type->GetShape(), place.sector, place.coords);
-    CellMap const *const map = step.map;
     CellType::Child const &next = place.type->GetChildren()[step.child];
     place.coords = step.Apply(place.coords);
-    Pair toCoords[2];
-    for (std::size_t i = 0; i < 2; ++i) {
-        for (std::size_t k = 0; k < 2; ++k) {
-            toCoords[i][k] =
-                map->rows[i][0] * place.toCoords[0][k] + map->rows[i][1] * place.toCoords[1][k];
-        }
-    }
-    place.toCoords[0] = toCoords[0];
-    place.toCoords[1] = toCoords[1];
+    Multiply(step.map->rows, place.toCoords, place.toCoords);
     place.type = next.type;
     ++place.depth;
     _steps.push_back(&next.step);
@@ -182,13 +168,11 @@ void CellStencil::takeStep(Place &place) {
 
 void CellStencil::addCorner(Place const &place, std::size_t corner, double weight,
                             bool hasDerivatives) {
-    if (!hasDerivatives) {
-        add(_weights[0], weight, place.type->GetCornerPoints()[corner]);
-        return;
+    add(_weights[0], weight, place.type->GetCornerPoints()[corner]);
+    if (hasDerivatives) {
+        place.AddDerivatives(corner, weight, place.type->GetDerivatives(int(corner)).rows,
+                             _weights + 1);
     }
-    CellType::Corner const &values = place.type->GetCorners()[corner];
-    add(_weights[0], weight, values.point);
-    place.AddDerivatives(corner, weight, values.derivatives, _weights + 1);
 }
 
 // Takes the steps back, and from derivatives what rounding has left.
@@ -231,7 +215,7 @@ void CellStencil::Find(BasePoint const &point, bool hasDerivatives) {
         _weights[1].assign(_weights[0].size(), 0.0);
         _weights[2] = _weights[1];
         root.AddDerivatives(std::size_t(rootCorner), 1,
-                            root.type->GetDerivativesOfStep(rootCorner).rows, _weights + 1);
+                            root.type->GetDerivatives(rootCorner, _of).rows, _weights + 1);
     }
 }
 
@@ -284,7 +268,7 @@ void CellStencil::addSecondBetweenCorners(Place const &place) {
         for (std::vector<double> &row : byUv) {
             row.assign(std::size_t(place.type->GetNumPoints()), 0.0);
         }
-        place.AddDerivatives(i, 1, place.type->GetCorners()[i].derivatives, byUv);
+        place.AddDerivatives(i, 1, place.type->GetDerivatives(int(i)).rows, byUv);
         auto const [u, v] = corners[i];
         Pair const slope = {(vv * u - uv * v) / determinant, (uu * v - uv * u) / determinant};
         add(_secondWeights[0], slope[0], byUv[0]);
@@ -294,13 +278,13 @@ void CellStencil::addSecondBetweenCorners(Place const &place) {
     }
 }
 
-void BorderStencil::Find(CellType const &root, double point, StencilOf of) {
-    _steps.clear();
+std::vector<double> FindBorderStencil(CellType const &root, double point, StencilOf of) {
+    std::vector<ChildStep const *> steps;
     CellType const *type = &root;
     bool const isVertex = root.GetNumCorners() == 1;
     auto const isAtEnd = [&] { return isVertex || point == 0 || point == 1; };
     for (int depth = 0; depth < kLastDepth; ++depth) {
-        if (isAtEnd() && (of == StencilOf::Points || !_steps.empty())) {
+        if (isAtEnd() && (of == StencilOf::Points || !steps.empty())) {
             break;
         }
         std::vector<CellType::Child> const &children = type->GetChildren();
@@ -310,19 +294,17 @@ void BorderStencil::Find(CellType const &root, double point, StencilOf of) {
             child = point < 0.25 ? 0 : point > 0.75 ? 2 : 1;
             point = child == 0 ? 4 * point : child == 1 ? 2 * point - 0.5 : 4 * (1 - point);
         }
-        _steps.push_back(&children[child].step);
+        steps.push_back(&children[child].step);
         type = children[child].type;
     }
     std::vector<std::vector<double>> const &ends = type->GetCornerPoints();
-    if (isAtEnd()) {
-        _weights = ends[point == 1 && !isVertex ? 1 : 0];
-    } else {
-        _weights.resize(ends[0].size());
-        for (std::size_t i = 0; i < _weights.size(); ++i) {
-            _weights[i] = (1 - point) * ends[0][i] + point * ends[1][i];
-        }
+    std::vector<double> weights = ends[point == 1 && !isVertex ? 1 : 0];
+    for (std::size_t i = 0; !isAtEnd() && i < weights.size(); ++i) {
+        weights[i] = (1 - point) * ends[0][i] + point * ends[1][i];
     }
-    goBack(_steps, of, _weights, _scratch);
+    std::vector<double> scratch;
+    goBack(steps, of, weights, scratch);
+    return weights;
 }
 
 } // namespace OpenSubdivHex::BfrExt::internal

@@ -27,12 +27,6 @@ CellStep FindCellStep(FaceShape shape, int sector, Pair const &coords);
 /// \param shape  of a whole cell; of size 0: of half cells
 int FindCellCorner(FaceShape shape, int sector, Pair const &coords);
 
-/// Sources of stencils.
-enum class StencilOf {
-    Points, ///< of a type
-    Step    ///< what the step of the type makes, by row of CellType::GetStep()
-};
-
 /// \brief The stencils of points of a base face and of their derivatives by u and v, which are the coordinates of its
 /// plane here.
 ///
@@ -97,20 +91,10 @@ private:
     std::vector<double> _scratch;
 };
 
-/// \brief The stencils of points of edges and vertices of base faces.
-class BorderStencil {
-public:
-    /// \param point  of an edge, from its start, 0, to its end, 1; of no matter for a vertex
-    void Find(CellType const &root, double point, StencilOf of = StencilOf::Points);
-
-    /// By what they are sums of.
-    std::vector<double> const &GetWeights() const { return _weights; }
-
-private:
-    std::vector<ChildStep const *> _steps;
-    std::vector<double> _weights;
-    std::vector<double> _scratch;
-};
+/// \brief The stencil of a point of an edge or a vertex of base faces.
+///
+/// \param point  of an edge, from its start, 0, to its end, 1; of no matter for a vertex
+std::vector<double> FindBorderStencil(CellType const &root, double point, StencilOf of);
 
 } // namespace OpenSubdivHex::BfrExt::internal
 

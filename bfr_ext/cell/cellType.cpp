@@ -102,41 +102,29 @@ std::uint64_t takeNumber() {
 
 } // namespace
 
-std::size_t GetCellHeapSize(CellPatch const &cell) {
-    LimitPatch const &patch = cell.patch;
-    std::size_t size = GetHeapSizes(cell.locals, cell.corners, patch.sources, patch.faceSizes,
-                                    patch.faceVerts, patch.otherCorners, patch.edgeSharpness,
-                                    patch.diagonalSharpness, patch.vertSharpness, patch.signature);
-    auto const add = [&size](auto const &array) { size += GetHeapSizes(array); };
-    CornerTags::ForEachListedKind(add, patch);
-    QuadCorners::ForEachArray(patch.quadCorners, add);
-    return size;
-}
-
 CellType::CellType(CellTypes &types, CellPatch const &cell, std::string packed,
                    CellRules const &rules)
     : _types(types), _number(takeNumber()), _packedCell(std::move(packed)), _kind(cell.kind),
       _numCorners(cell.GetNumCorners()), _numPoints(int(cell.patch.sources.size())),
       _isInLattice(isInLattice(cell.patch)), _isSharp(isSharp(cell.patch)), _rules(rules),
-      _borderItems(types.GetMemory()), _patterns(types.GetMemory()) {}
+      _patterns(types.GetMemory()) {}
 
-std::vector<CellType::Child> const &CellType::GetChildren() const {
-    std::call_once(_onceChildren, [&] {
-        CellRefinement refinement = RefineCell(MakeCell(), _rules.sdcOptions,
-                                               _rules.hexSchemeOptions, _rules.interpolation);
-        std::vector<Child> children;
-        children.reserve(refinement.children.size());
-        for (std::size_t i = 0; i < refinement.children.size(); ++i) {
-            children.push_back({&_types.Find(refinement.children[i], _rules),
-                                ChildStep(_step, refinement.rows[i])});
-        }
-        if (!children.empty()) {
-            _step = StepMatrix(refinement.step);
-        }
-        _children = std::move(children);
-        GetMemory().Add(GetHeapSizes(_children, _step));
-    });
-    return _children;
+void CellType::makeChildren(CellRefinement const *known) const {
+    CellRefinement const own = known ? CellRefinement()
+                                     : RefineCell(MakeCell(), _rules.sdcOptions,
+                                                  _rules.hexSchemeOptions, _rules.interpolation);
+    CellRefinement const &refinement = known ? *known : own;
+    std::vector<Child> children;
+    children.reserve(refinement.children.size());
+    for (std::size_t i = 0; i < refinement.children.size(); ++i) {
+        children.push_back(
+            {&_types.Find(refinement.children[i], _rules), ChildStep(_step, refinement.rows[i])});
+    }
+    if (!children.empty()) {
+        _step = StepMatrix(refinement.step);
+    }
+    _children = std::move(children);
+    GetMemory().Add(GetHeapSizes(_children, _step));
 }
 
 bool CellType::IsRegular() const {
@@ -252,75 +240,43 @@ CellType::Derivatives CellType::findEarlierDerivatives(int corner) const {
     return derivatives;
 }
 
-// Returns find(type, corner) of the child that has the corner, by the coordinates of this cell.
-//
-// turn(step, sum, result) turns a sum of the child's points to one of others.
-template <typename FIND, typename TURN>
-CellType::Derivatives const &CellType::getDerivatives(PatternOf of, int corner, FIND const &find,
-                                                      TURN const &turn) const {
-    return _patterns.Get<Derivatives>(PatternTable::GetKind<double>(of), &corner, &corner + 1, [&] {
+// Those of the child that has the corner, by the coordinates of this cell.
+CellType::Derivatives const &CellType::GetDerivatives(int corner, StencilOf of,
+                                                      bool areParents) const {
+    int const key[3] = {corner, int(of), int(areParents)};
+    constexpr int kKind = PatternTable::GetKind<double>(PatternOf::Derivatives);
+    return _patterns.Get<Derivatives>(kKind, key, key + 3, [&] {
         CornerChild const next = FindCornerChild(GetShape(), corner);
         Child const &child = GetChildren()[next.child];
-        Derivatives const ofChild = find(*child.type, next.corner);
+        Derivatives const ofChild =
+            areParents ? child.type->findEarlierDerivatives(next.corner)
+                       : child.type->GetDerivatives(next.corner, StencilOf::Points, true);
         Derivatives result;
         for (std::size_t k = 0; k < 2; ++k) {
-            turn(child.step, next.map->GetDerivatives(ofChild.rows, k), result.rows[k]);
+            Vector const sum = next.map->GetDerivatives(ofChild.rows, k);
+            if (of == StencilOf::Step) {
+                child.step.Spread(sum, result.rows[k]);
+            } else {
+                child.step.ApplyLeft(sum, result.rows[k]);
+            }
         }
         return result;
     });
 }
 
-namespace {
-
-void applyLeft(ChildStep const &step, Vector const &sum, Vector &row) { step.ApplyLeft(sum, row); }
-void spread(ChildStep const &step, Vector const &sum, Vector &row) { step.Spread(sum, row); }
-
-} // namespace
-
-CellType::Derivatives const &CellType::GetParentDerivatives(int corner) const {
-    auto const find = [](CellType const &child, int ofChild) {
-        return child.findEarlierDerivatives(ofChild);
-    };
-    return getDerivatives(PatternOf::ParentDerivatives, corner, find, applyLeft);
-}
-
-CellType::Derivatives const &CellType::GetParentDerivativesOfStep(int corner) const {
-    auto const find = [](CellType const &child, int ofChild) {
-        return child.findEarlierDerivatives(ofChild);
-    };
-    return getDerivatives(PatternOf::ParentDerivativesOfStep, corner, find, spread);
-}
-
-CellType::Derivatives const &CellType::GetDerivativesOfStep(int corner) const {
-    auto const find = [](CellType const &child, int ofChild) {
-        return child.GetParentDerivatives(ofChild);
-    };
-    return getDerivatives(PatternOf::DerivativesOfStep, corner, find, spread);
-}
-
 CellType::BorderItem const &CellType::GetBorderItem(int const *turns, std::size_t item) const {
-    auto const get = [&](std::size_t i, auto const &make) -> BorderItem const & {
-        return _borderItems.Get<BorderItem>(int(i), turns + i, turns + i + 1, make);
-    };
-    return get(item, [&] {
-        // The others are asked for, too.
-        std::vector<CellPatch> patches = GatherBorder(MakeCell(), turns, _rules.sdcOptions);
-        std::size_t const numEdges = patches.size() / 2;
+    return FindBorderItem(_patterns, turns, item, [&] {
+        std::vector<CellPatch> const patches = GatherBorder(MakeCell(), turns, _rules.sdcOptions);
         std::vector<BorderItem> items;
-        for (std::size_t i = 0; i < patches.size(); ++i) {
-            std::vector<int> points = patches[i].patch.sources;
-            points.shrink_to_fit();
-            CellType const &type = _types.Find(patches[i], _rules);
-            RingItem const &rings = RingItem::Get(type, patches[i], _types.GetRingCells(_rules));
-            items.push_back({&type, std::move(points), i < numEdges && turns[i] == 1,
+        items.reserve(patches.size());
+        for (CellPatch const &patch : patches) {
+            CellType const &type = _types.Find(patch, _rules);
+            RingItem const &rings = RingItem::Get(type, patch, _types.GetRingCells(_rules));
+            std::size_t const i = items.size();
+            items.push_back({&type, patch.patch.sources, i < patches.size() / 2 && turns[i] == 1,
                              rings.cell ? &rings : nullptr});
         }
-        for (std::size_t i = 0; i < items.size(); ++i) {
-            if (i != item) {
-                get(i, [&] { return items[i]; });
-            }
-        }
-        return items[item];
+        return items;
     });
 }
 
@@ -337,25 +293,6 @@ std::vector<double> CellType::FindPatchPoints(PatchAges const &ages) const {
                     std::numeric_limits<double>::quiet_NaN());
     }
     return rows;
-}
-
-std::vector<CellType::Corner> const &CellType::GetCorners() const {
-    std::call_once(_onceCorners, [&] {
-        std::vector<Corner> corners(GetCornerPoints().size());
-        for (std::size_t i = 0; i < corners.size(); ++i) {
-            corners[i].point = GetCornerPoints()[i];
-            CornerChild const next = FindCornerChild(GetShape(), int(i));
-            Child const &child = GetChildren()[next.child];
-            Derivatives const &ofChild = child.type->GetParentDerivatives(next.corner);
-            for (std::size_t k = 0; k < 2; ++k) {
-                child.step.ApplyLeft(next.map->GetDerivatives(ofChild.rows, k),
-                                     corners[i].derivatives[k]);
-            }
-        }
-        _corners = std::move(corners);
-        GetMemory().Add(internal::GetHeapSize(_corners));
-    });
-    return _corners;
 }
 
 MemoryCount &CellType::GetMemory() const { return _types.GetMemory(); }

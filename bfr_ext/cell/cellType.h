@@ -34,8 +34,11 @@ struct CellRules {
     FarExt::Interpolation interpolation = FarExt::Interpolation::Vertex;
 };
 
-/// Bytes of a cell on the heap.
-std::size_t GetCellHeapSize(FarExt::internal::CellPatch const &cell);
+/// Sources of stencils.
+enum class StencilOf {
+    Points, ///< of a type
+    Step    ///< what the step of the type makes, by row of CellType::GetStep()
+};
 
 /// \brief All cells whose patches look alike: what the surface in them is in terms of the vertices of
 /// the patch, its *points*.
@@ -51,17 +54,6 @@ public:
 
         CellType const *type;
         ChildStep step; ///< its points in terms of the parent's
-    };
-
-    /// The surface at a corner, as sums of points: it, and its first derivatives by the coordinates of
-    /// HalfCell or, in a whole cell, of the sector FaceShape::GetSectorOfCorner().
-    struct Corner {
-        std::size_t GetHeapSize() const {
-            return GetHeapSizes(point, derivatives[0], derivatives[1]);
-        }
-
-        std::vector<double> point;
-        std::vector<double> derivatives[2];
     };
 
     /// \param packed  the cell of PackCell(), with anything behind it
@@ -83,7 +75,6 @@ public:
         return IsWhole() ? FaceShape(GetNumCorners(), IsHalfPolygon()) : FaceShape();
     }
     bool IsLongEdge() const { return _kind == FarExt::internal::CellKind::LongEdge; }
-    bool IsVertex() const { return _kind == FarExt::internal::CellKind::Vertex; }
     int GetNumCorners() const { return _numCorners; }
     int GetNumPoints() const { return _numPoints; }
 
@@ -111,7 +102,14 @@ public:
     }
 
     /// Children are in the order of RefineCell().
-    std::vector<Child> const &GetChildren() const;
+    std::vector<Child> const &GetChildren() const {
+        std::call_once(_onceChildren, [&] { makeChildren(nullptr); });
+        return _children;
+    }
+    /// Makes the children, if they are not made, of what RefineCell() makes of the cell.
+    void MakeChildren(FarExt::internal::CellRefinement const &refinement) const {
+        std::call_once(_onceChildren, [&] { makeChildren(&refinement); });
+    }
     /// The points that the children have, in terms of those of the type.
     StepMatrix const &GetStep() const {
         GetChildren();
@@ -122,26 +120,22 @@ public:
 
     /// Whether the surface is known at the corners.
     bool HasCorners() const { return !GetCornerPoints().empty(); }
-    /// By corner, without derivatives.
+    /// The surface there, by corner, as sums of points.
     std::vector<std::vector<double>> const &GetCornerPoints() const;
-    /// By corner; of cells.
-    std::vector<Corner> const &GetCorners() const;
 
-    /// Derivatives by two coordinates, as sums of points.
+    /// Derivatives by two coordinates: those of HalfCell or, in a whole cell, of the sector FaceShape::GetSectorOfCorner().
     struct Derivatives {
         std::size_t GetHeapSize() const { return GetHeapSizes(rows[0], rows[1]); }
 
         std::vector<double> rows[2];
     };
-    /// \brief The parent's corner derivatives, in this cell's coordinates and control points.  They differ from this
-    /// cell's own where steps make derivatives grow or shrink.
-    Derivatives const &GetParentDerivatives(int corner) const;
-    /// @name The derivatives at a corner, as of GetCorners() and of GetParentDerivatives(), as sums of the
-    /// points that the step makes, by row of GetStep()
-    /// @{
-    Derivatives const &GetDerivativesOfStep(int corner) const;
-    Derivatives const &GetParentDerivativesOfStep(int corner) const;
-    /// @}
+    /// \brief The derivatives of the surface at a corner of a cell.
+    ///
+    /// \param of           what they are sums of
+    /// \param areParents  whether they are those of the cell that has made this one, which differ where steps make
+    ///                    derivatives grow or shrink
+    Derivatives const &GetDerivatives(int corner, StencilOf of = StencilOf::Points,
+                                      bool areParents = false) const;
 
     /// \brief An edge or a vertex of a base face, with which of the face's points its points are.
     struct BorderItem {
@@ -158,6 +152,25 @@ public:
     ///
     /// \param turns  those of FindBaseCellTurns()
     BorderItem const &GetBorderItem(int const *turns, std::size_t item) const;
+    /// Finds an item in a table, which gets all items that make() gives with a type, if it has not this one.
+    template <typename MAKE>
+    static BorderItem const &FindBorderItem(PatternTable &table, int const *turns, std::size_t item,
+                                            MAKE const &make) {
+        auto const get = [&](std::size_t i, auto const &makeItem) -> BorderItem const & {
+            int const key[2] = {int(i), turns[i]};
+            return table.Get<BorderItem>(PatternTable::GetKind<double>(PatternOf::BorderItem), key,
+                                         key + 2, makeItem);
+        };
+        return get(item, [&] {
+            std::vector<BorderItem> const items = make();
+            for (std::size_t i = 0; i < items.size(); ++i) {
+                if (i != item && items[i].type) {
+                    get(i, [&] { return items[i]; });
+                }
+            }
+            return items[item];
+        });
+    }
     /// \brief The points of the Gregory patches of a cell, as FarExt::internal::FindCellPatchPoints() has them;
     /// not numbers where it has no limit at a corner.
     std::vector<double> FindPatchPoints(FarExt::internal::PatchAges const &ages) const;
@@ -167,12 +180,10 @@ public:
     MemoryCount &GetMemory() const;
 
 private:
+    void makeChildren(FarExt::internal::CellRefinement const *known) const;
     void findDifferences(int corner, int numSteps, std::vector<double> (&result)[2]) const;
     Derivatives findEarlierDerivatives(int corner) const;
     std::optional<FarExt::internal::LimitMask::Tangents> findTangents(int corner) const;
-    template <typename FIND, typename TURN>
-    Derivatives const &getDerivatives(PatternOf of, int corner, FIND const &find,
-                                      TURN const &turn) const;
 
     CellTypes &_types;
     std::uint64_t const _number;
@@ -188,9 +199,6 @@ private:
     mutable StepMatrix _step;
     mutable std::once_flag _oncePoints;
     mutable std::vector<std::vector<double>> _points;
-    mutable std::once_flag _onceCorners;
-    mutable std::vector<Corner> _corners;
-    mutable PatternTable _borderItems;
     mutable PatternTable _patterns;
 };
 

@@ -7,19 +7,10 @@
 
 namespace OpenSubdivHex::BfrExt::internal {
 
-void CellValues::SetBase(CellType const &root, double const *controlPoints, int length) {
-    _type = &root;
-    _plain = nullptr;
-    setBase(root.GetNumPoints(), controlPoints, length);
-}
-
-void CellValues::SetBase(PlainFaceType const &root, double const *controlPoints, int length) {
-    _type = nullptr;
-    _plain = &root;
-    setBase(root.GetNumPoints(), controlPoints, length);
-}
-
-void CellValues::setBase(int numPoints, double const *controlPoints, int length) {
+void CellValues::SetBase(BaseType const &type, double const *controlPoints, int length) {
+    _plain = type.GetPlain();
+    _type = _plain ? nullptr : &*type;
+    int const numPoints = _plain ? _plain->GetNumPoints() : _type->GetNumPoints();
     _level = 0;
     _length = length;
     _paddedSize = StepMatrix::GetPaddedSize(std::size_t(length));
@@ -87,11 +78,8 @@ void CellValues::SetChild(CellValues const &parent, int child) {
                 },
                 _indices.data());
             for (std::size_t i = 0; i < columns.size(); ++i) {
-                double const *const from = &parent._refined[std::size_t(_indices[i]) * _paddedSize];
-                double *const to = &points[std::size_t(columns[i]) * _paddedSize];
-                for (std::size_t k = 0; k < _paddedSize; k += StepMatrix::kPadding) {
-                    std::copy_n(from + k, StepMatrix::kPadding, to + k);
-                }
+                StepMatrix::CopyPadded(&parent._refined[std::size_t(_indices[i]) * _paddedSize],
+                                       _paddedSize, &points[std::size_t(columns[i]) * _paddedSize]);
             }
         };
         _type = &cell.GetType();
@@ -99,7 +87,7 @@ void CellValues::SetChild(CellValues const &parent, int child) {
         copy(cell.GetPoints(), RingStep::First, _points);
         if (cell.IsInner()) {
             _refined.resize(std::max(_refined.size(), cell.GetColumns().size() * _paddedSize));
-            copy(cell.GetPlaces(), cell.GetLastStep(), _refined);
+            copy(cell.GetPlaces(), RingStep::Second, _refined);
             _isRefined = true;
             _isInner = true;
         }
@@ -124,13 +112,7 @@ void CellValues::findCoords(CellValues const &parent, int child) {
         return;
     }
     _sector = parent._sector;
-    CellMap const &map = HalfCell::kChildren[std::size_t(child)];
-    for (std::size_t i = 0; i < 2; ++i) {
-        for (std::size_t k = 0; k < 2; ++k) {
-            _toCoords[i][k] =
-                map.rows[i][0] * parent._toCoords[0][k] + map.rows[i][1] * parent._toCoords[1][k];
-        }
-    }
+    Multiply(HalfCell::kChildren[std::size_t(child)].rows, parent._toCoords, _toCoords);
 }
 
 void CellValues::sum(std::vector<double> const &weights, std::vector<double> const &points,
@@ -160,29 +142,18 @@ void CellValues::EvaluateCorner(int corner, double *du, double *dv) const {
     Pair toCoords[2];
     if (type.IsWhole()) {
         // The corner has the coordinates of its own sector, larger by what the steps have made them.
-        BasePoint const sector =
-            MakeBasePoint(type.GetShape(), type.GetShape().GetSectorOfCorner(corner), {});
-        for (std::size_t i = 0; i < 2; ++i) {
-            toCoords[i] = {std::ldexp(sector.toCoords[i][0], _level),
-                           std::ldexp(sector.toCoords[i][1], _level)};
-        }
+        std::copy_n(MakeCornerPoint(type.GetShape(), corner, _level).toCoords, 2, toCoords);
     } else {
-        BasePoint const sector = MakeBasePoint(_faceShape, _sector, {});
-        for (std::size_t i = 0; i < 2; ++i) {
-            for (std::size_t k = 0; k < 2; ++k) {
-                toCoords[i][k] = _toCoords[i][0] * sector.toCoords[0][k] +
-                                 _toCoords[i][1] * sector.toCoords[1][k];
-            }
-        }
+        Multiply(_toCoords, MakeBasePoint(_faceShape, _sector, {}).toCoords, toCoords);
     }
     auto const length = std::size_t(_length);
     _scratch.resize(2 * length);
     for (std::size_t i = 0; i < 2; ++i) {
         double *const result = _scratch.data() + i * length;
         if (_isInner) {
-            sum(type.GetDerivativesOfStep(corner).rows[i], _refined, result);
+            sum(type.GetDerivatives(corner, StencilOf::Step).rows[i], _refined, result);
         } else {
-            sum(type.GetCorners()[std::size_t(corner)].derivatives[i], _points, result);
+            sum(type.GetDerivatives(corner).rows[i], _points, result);
         }
     }
     for (std::size_t k = 0; k < length; ++k) {

@@ -2,8 +2,8 @@
 #ifndef OPENSUBDIVHEX_BFR_EXT_CELL_CELL_VALUES_H
 #define OPENSUBDIVHEX_BFR_EXT_CELL_CELL_VALUES_H
 
+#include "baseType.h"
 #include "cellStencil.h"
-#include "plainFace.h"
 
 #include <vector>
 
@@ -20,9 +20,7 @@ namespace OpenSubdivHex::BfrExt::internal {
 class CellValues {
 public:
     /// The values of a base face, whose control points are \p length numbers each, without gaps.
-    void SetBase(CellType const &root, double const *controlPoints, int length);
-    /// Overload for a plain face that is not in a lattice.
-    void SetBase(PlainFaceType const &root, double const *controlPoints, int length);
+    void SetBase(BaseType const &type, double const *controlPoints, int length);
     /// \brief A child, in the order of RefineCell().
     ///
     /// \param parent  another object
@@ -52,7 +50,6 @@ public:
     void EvaluateCorner(int corner, double *du, double *dv) const;
 
 private:
-    void setBase(int numPoints, double const *controlPoints, int length);
     void refine() const;
     void findCoords(CellValues const &parent, int child);
     void sum(std::vector<double> const &weights, std::vector<double> const &points,

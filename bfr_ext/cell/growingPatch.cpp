@@ -12,12 +12,6 @@ void GrowingPatch::Start(int size) {
         _inner[vert] = vert;
     }
     _size = _numInner = _numMade = size;
-    _keepsFaces = false;
-    _numFaceBytes = 0;
-}
-
-void GrowingPatch::KeepFaces() {
-    _keepsFaces = true;
     _faces[0] = std::uint8_t(_size);
     std::iota(_faces + 1, _faces + 1 + _size, std::uint8_t(0));
     _numFaceBytes = 1 + _size;
@@ -56,9 +50,7 @@ bool GrowingPatch::Add(int inner, int numFaces, std::uint8_t const *sizes) {
             }
             last = _numMade - 1;
         }
-        if (_keepsFaces) {
-            keepFace(vert, first, firstMade, isLast ? behind : kNone);
-        }
+        keepFace(vert, first, firstMade, isLast ? behind : kNone);
         if (!isLast && hasInnerNeighbors && !addInner(last, _verts[last].numFaces)) {
             return false;
         }
@@ -132,21 +124,23 @@ void GrowingPatch::keepFace(int vert, int last, int firstMade, int behind) {
     _numFaceBytes = int(to - _faces);
 }
 
-GrowingPatch::Run *GrowingPatch::GetRuns(Run *runs) const {
-    Run *const begin = runs;
+std::vector<GrowingPatch::Run> GrowingPatch::GetRuns() const {
+    std::vector<Run> runs;
+    runs.reserve(std::size_t(_numMade - _numInner));
     for (int vert = _size; vert < _numMade; ++vert) {
         if (!isPoint(vert)) {
             continue;
         }
         Point const &point = _points[vert];
-        Run *const last = runs - 1;
-        if (runs != begin && point.vert == last->first.vert && point.place == last->first.place &&
-            point.corner == last->first.corner + last->numPoints) {
-            ++last->numPoints;
+        if (!runs.empty() && point.vert == runs.back().first.vert &&
+            point.place == runs.back().first.place &&
+            point.corner == runs.back().first.corner + runs.back().numPoints) {
+            ++runs.back().numPoints;
         } else {
-            *runs++ = {point, 1};
+            runs.push_back({point, 1});
         }
     }
+    runs.shrink_to_fit();
     return runs;
 }
 

@@ -41,12 +41,9 @@ public:
         Point first;
         std::uint8_t numPoints;
     };
-    /// Writes where the vertices that are not inner were met.
-    /// \return  the end of what was written
-    Run *GetRuns(Run *runs) const;
-    /// Has Add() keep the faces; behind Start().
-    void KeepFaces();
-    /// The sizes and the vertices of the faces that were kept; inner vertices come before others.
+    /// Where the vertices that are not inner were met.
+    std::vector<Run> GetRuns() const;
+    /// The sizes and the vertices of the faces; inner vertices come before others.
     void GetFaces(std::vector<int> &sizes, std::vector<int> &verts) const;
 
 private:
@@ -78,7 +75,6 @@ private:
     int _size = 0;
     int _numInner = 0;
     int _numMade = 0;
-    bool _keepsFaces = false;
     int _inner[kMaxInner] = {};
     Vertex _verts[kMaxVerts] = {};
     Point _points[kMaxVerts] = {};           // by vertex

@@ -16,6 +16,14 @@ namespace OpenSubdivHex::BfrExt::internal {
 /// Two coordinates in a cell, or derivatives of these.
 using Pair = std::array<double, 2>;
 
+/// Writes the product of two matrices, which may be one of them.
+inline void Multiply(Pair const (&a)[2], Pair const (&b)[2], Pair (&result)[2]) {
+    Pair const rows[2] = {
+        {a[0][0] * b[0][0] + a[0][1] * b[1][0], a[0][0] * b[0][1] + a[0][1] * b[1][1]},
+        {a[1][0] * b[0][0] + a[1][1] * b[1][0], a[1][0] * b[0][1] + a[1][1] * b[1][1]}};
+    std::copy_n(rows, 2, result);
+}
+
 /// \brief Map of coordinates in one cell to those in another: linear, and a shift.
 struct CellMap {
     Pair Apply(Pair const &p) const {
@@ -43,12 +51,7 @@ inline constexpr CellMap kToFFace = {{{2, 0}, {0, 2}}, {0, 0}};
 /// first, then second.
 inline CellMap Concatenate(CellMap const &first, CellMap const &second) {
     CellMap result;
-    for (std::size_t i = 0; i < 2; ++i) {
-        for (std::size_t k = 0; k < 2; ++k) {
-            result.rows[i][k] =
-                second.rows[i][0] * first.rows[0][k] + second.rows[i][1] * first.rows[1][k];
-        }
-    }
+    Multiply(second.rows, first.rows, result.rows);
     result.shift = second.Apply(first.shift);
     return result;
 }
@@ -81,33 +84,6 @@ public:
     static constexpr int kCornerChildren[4] = {3, 1, 2, 3};
     static constexpr int kCornersOfChildren[4] = {1, 0, 0, 0};
 
-    /// @name Corners in any coordinates in which lines are straight, two numbers each
-    /// @{
-
-    /// The corners of the half cell that a step makes at the edge of a sector of a whole cell, whose corners are
-    /// \p scale from the centre.
-    template <typename PLACE, typename SCALE>
-    static std::array<PLACE, 4> GetCornersAtEdge(SCALE scale) {
-        SCALE const half = scale / 2;
-        return {{{scale, 0}, {0, scale}, {0, half}, {half, 0}}};
-    }
-    /// The corners of a child of a half cell.
-    template <typename PLACE>
-    static std::array<PLACE, 4> GetCornersOfChild(std::array<PLACE, 4> const &corners,
-                                                  std::size_t child) {
-        auto const getMiddle = [](PLACE const &p, PLACE const &q) {
-            return PLACE{(p[0] + q[0]) / 2, (p[1] + q[1]) / 2};
-        };
-        PLACE const middle = getMiddle(corners[0], corners[1]);
-        auto const getInner = [&](std::size_t i) { return getMiddle(corners[i], middle); };
-        if (child == 0) {
-            return {{getInner(0), getInner(1), getInner(2), getInner(3)}};
-        }
-        std::size_t const next = (child + 1) % 4;
-        return {{corners[child], corners[next], getInner(next), getInner(child)}};
-    }
-    /// @}
-
     /// How much the corners weigh in the bilinear interpolation between them.
     static std::array<double, 4> GetCornerWeights(Pair const &point) {
         double const t = 2 * point[1];
@@ -137,12 +113,23 @@ struct CellOutline {
     int GetNumChildren(FaceShape face) const { return isWhole ? face.GetNumSectors() + 1 : 4; }
     /// A child, in the order of RefineCell().
     CellOutline GetChild(FaceShape face, int child) const {
-        if (isWhole && child > 0) {
-            return MakeHalf(child - 1 + face.GetFirstSector(),
-                            HalfCell::GetCornersAtEdge<PLACE>(scale));
+        Number const half = scale / 2;
+        if (isWhole) {
+            return child == 0 ? MakeWhole(half)
+                              : MakeHalf(child - 1 + face.GetFirstSector(),
+                                         {{{scale, 0}, {0, scale}, {0, half}, {half, 0}}});
         }
-        return isWhole ? MakeWhole(scale / 2)
-                       : MakeHalf(sector, HalfCell::GetCornersOfChild(corners, std::size_t(child)));
+        auto const getMiddle = [](PLACE const &p, PLACE const &q) {
+            return PLACE{(p[0] + q[0]) / 2, (p[1] + q[1]) / 2};
+        };
+        PLACE const middle = getMiddle(corners[0], corners[1]);
+        auto const getInner = [&](std::size_t i) { return getMiddle(corners[i], middle); };
+        if (child == 0) {
+            return MakeHalf(sector, {{getInner(0), getInner(1), getInner(2), getInner(3)}});
+        }
+        auto const start = std::size_t(child);
+        std::size_t const end = (start + 1) % 4;
+        return MakeHalf(sector, {{corners[start], corners[end], getInner(end), getInner(start)}});
     }
     int GetNumCorners(FaceShape face) const { return isWhole ? face.size : 4; }
     SectorPlace<PLACE> GetCorner(FaceShape face, int corner) const {

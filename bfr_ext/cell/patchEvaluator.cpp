@@ -17,10 +17,8 @@ bool isLarge(CellType const &type, CellPlan::Node const &leaf) {
 template <typename REAL, typename GET>
 PlaceMatrix<REAL> makeDerivatives(RingCell const &cell, GET const &getRow) {
     PlaceMatrix<REAL> matrix(2, cell.GetColumns().size());
-    std::vector<double> ordered;
     for (std::size_t k = 0; k < 2; ++k) {
-        cell.GetPlaces().Order(getRow(k), ordered);
-        matrix.Set(k, ordered);
+        matrix.Set(k, cell.GetPlaces().Order(getRow(k)));
     }
     return matrix;
 }
@@ -32,8 +30,7 @@ PlaceMatrix<REAL> const &getFaceDerivatives(RingCell const &child) {
     constexpr int kKind = PatternTable::GetKind<REAL>(PatternOf::FaceCorner);
     return child.GetPatterns().Get<PlaceMatrix<REAL>>(kKind, nullptr, nullptr, [&] {
         CellType const &type = child.GetType();
-        CellType::Derivatives const &derivatives =
-            child.IsInner() ? type.GetParentDerivativesOfStep(0) : type.GetParentDerivatives(0);
+        CellType::Derivatives const &derivatives = type.GetDerivatives(0, child.GetSources(), true);
         return makeDerivatives<REAL>(child, [&](std::size_t k) {
             return HalfCell::kFromSector.GetDerivatives(derivatives.rows, k);
         });
@@ -45,7 +42,8 @@ template <typename REAL>
 PlaceMatrix<REAL> const &getCornerDerivatives(RingCell const &child, int corner) {
     constexpr int kKind = PatternTable::GetKind<REAL>(PatternOf::ChildCorner);
     return child.GetPatterns().Get<PlaceMatrix<REAL>>(kKind, &corner, &corner + 1, [&] {
-        CellType::Derivatives const &derivatives = child.GetType().GetDerivativesOfStep(corner);
+        CellType::Derivatives const &derivatives =
+            child.GetType().GetDerivatives(corner, child.GetSources());
         return makeDerivatives<REAL>(child, [&](std::size_t k) -> std::vector<double> const & {
             return derivatives.rows[k];
         });
@@ -58,19 +56,15 @@ PlaceMatrix<REAL> const &getCornerDerivatives(RingCell const &child, int corner)
 template <typename REAL>
 typename PlaceSource<REAL>::Matrices
 PlaceSource<REAL>::MakeMatrices(std::vector<BfrPlace> const &places, bool hasDerivatives) const {
-    bool const isOfStep = ringCell && ringCell->IsInner();
-    CellStencil stencil(type, isOfStep ? StencilOf::Step : StencilOf::Points);
+    StencilOf const of = ringCell ? ringCell->GetSources() : StencilOf::Points;
+    CellStencil stencil(type, of);
     std::size_t const numColumns =
         ringCell ? ringCell->GetColumns().size() : std::size_t(type.GetNumPoints());
     Matrices result = {{}, hasDerivatives ? std::size_t(2) : std::size_t(1)};
     std::fill_n(result.matrices.begin(), result.count,
                 PlaceMatrix<REAL>(places.size(), numColumns));
-    std::vector<double> ordered;
     auto const set = [&](std::size_t kind, std::size_t row, std::vector<double> const &weights) {
-        if (ringCell) {
-            ringCell->GetPlaces().Order(weights, ordered);
-        }
-        result.matrices[kind].Set(row, ringCell ? ordered : weights);
+        result.matrices[kind].Set(row, ringCell ? ringCell->GetPlaces().Order(weights) : weights);
     };
     std::vector<double> derivative;
     for (std::size_t row = 0; row < places.size(); ++row) {
@@ -83,8 +77,7 @@ PlaceSource<REAL>::MakeMatrices(std::vector<BfrPlace> const &places, bool hasDer
         std::vector<double> const *along[2] = {&stencil.GetDuWeights(), &stencil.GetDvWeights()};
         // Vertices of the face have the derivatives of the face.
         if (ringCell && !type.IsWhole() && place.point.coords == HalfCell::kCorners[0]) {
-            CellType::Derivatives const &ofFace =
-                isOfStep ? type.GetParentDerivativesOfStep(0) : type.GetParentDerivatives(0);
+            CellType::Derivatives const &ofFace = type.GetDerivatives(0, of, true);
             along[0] = &ofFace.rows[0];
             along[1] = &ofFace.rows[1];
         }
@@ -293,9 +286,9 @@ void PatchEvaluator<REAL>::evaluateCorners(CellType const &type, CellPlan::Node 
             }
             continue;
         }
-        CellType::Corner const &ofType = type.GetCorners()[corner.corner];
+        CellType::Derivatives const &ofType = type.GetDerivatives(int(corner.corner));
         for (std::size_t k = 0; k < _size; ++k) {
-            double const along[2] = {sum(ofType.derivatives[0], k), sum(ofType.derivatives[1], k)};
+            double const along[2] = {sum(ofType.rows[0], k), sum(ofType.rows[1], k)};
             for (std::size_t i = 0; i < 2; ++i) {
                 _results[i][first + std::ptrdiff_t(k)] =
                     REAL(corner.toCoords[0][i] * along[0] + corner.toCoords[1][i] * along[1]);

@@ -26,9 +26,7 @@ enum class PatternOf {
     Leaf,
     LeafDerivatives,
     VertexWeights,
-    ParentDerivatives,
-    DerivativesOfStep,
-    ParentDerivativesOfStep,
+    Derivatives,
     FaceCorner,
     ChildCorner,
     RingCell,
@@ -38,7 +36,7 @@ enum class PatternOf {
     PatchRows,
     ChildPatches,
     FacePatches,
-    LatticeItem
+    BorderItem
 };
 
 /// \brief Values by key, of any type.

@@ -3,13 +3,9 @@
 
 #include "patchCorners.h"
 
-#include "far_ext/vtr/hash.h"
-
 #include <algorithm>
-#include <cstring>
-#include <new>
+#include <functional>
 #include <numeric>
-#include <type_traits>
 #include <utility>
 
 namespace OpenSubdivHex::BfrExt::internal {
@@ -28,17 +24,24 @@ int getFaceSize(Level const &level, Far::Index place) {
     return level.GetFaceSize(level.vertFaces[place]);
 }
 
+// Keys are no longer.
+constexpr std::size_t kMaxKeySize = 192;
+
+std::uint8_t const *getBytes(PlainFaceKey const &key) {
+    return reinterpret_cast<std::uint8_t const *>(key.data());
+}
+
 // Whether the faces of a key are a piece of a regular lattice.
 bool isInLattice(PlainFaceKey const &key, int numVerts) {
-    std::uint8_t const *const numFaces = key.GetBytes() + 1;
-    int const valence = CellType::GetLatticeValence(key.GetBytes()[0]); // 0 where sizes differ
+    std::uint8_t const *const numFaces = getBytes(key) + 1;
+    int const valence = CellType::GetLatticeValence(getBytes(key)[0]); // 0 where sizes differ
     return std::all_of(numFaces, numFaces + numVerts,
                        [&](int number) { return number == valence; });
 }
 
 // Adds all faces of a key to a patch that has begun; false where no disc has them.
-bool grow(std::uint8_t const *key, int numVerts, GrowingPatch &patch) {
-    std::uint8_t const *const numFaces = key + 1;
+bool grow(PlainFaceKey const &key, int numVerts, GrowingPatch &patch) {
+    std::uint8_t const *const numFaces = getBytes(key) + 1;
     std::uint8_t const *sizes = (key[0] & kHasSizes) != 0 ? numFaces + numVerts : nullptr;
     for (int vert = 0; vert < numVerts; ++vert) {
         if (!patch.Add(vert, numFaces[vert], sizes)) {
@@ -51,55 +54,20 @@ bool grow(std::uint8_t const *key, int numVerts, GrowingPatch &patch) {
     return patch.GetNumInner() == numVerts;
 }
 
-int getFaceSize(std::uint8_t const *key) { return key[0] & ~kHasSizes; }
-
 } // namespace
 
-std::size_t PlainFaceKey::GetHash() const {
-    constexpr std::size_t kWord = sizeof(std::uint64_t);
-    static_assert(kMaxSize % kWord == 0);
-    std::uint64_t hash = _size;
-    for (std::size_t i = 0; i < _size; i += kWord) {
-        std::uint64_t word = 0;
-        std::memcpy(&word, _bytes + i, kWord);
-        if (_size - i < kWord) { // the rest is of other keys
-            word &= (std::uint64_t(1) << 8 * (_size - i)) - 1;
-        }
-        hash = FarExt::internal::AddToHash(hash, word);
-    }
-    return hash;
-}
-
 PlainFaceType::PlainFaceType(PlainFaceTypes &types, PlainFaceKey const &key, int numVerts,
-                             int numRuns, int numOthers)
-    : hash(key.GetHash()), _types(types), _keySize(key.GetSize()), _numVerts(numVerts),
-      _numRuns(numRuns), _numOthers(numOthers), _isInLattice(isInLattice(key, numVerts)) {}
-
-PlainFaceType const *PlainFaceType::Make(PlainFaceTypes &types, PlainFaceKey const &key,
-                                         int numVerts, GrowingPatch const &patch,
-                                         ByteBlocks &blocks) {
-    static_assert(alignof(Run) == 1 && std::is_trivially_copyable_v<Run>);
-    Run runs[GrowingPatch::kMaxVerts];
-    Run const *const end = patch.GetRuns(runs);
-    auto const sizeOfRuns = std::size_t(end - runs) * sizeof(Run);
-    std::byte *const memory = blocks.Take(sizeof(PlainFaceType) + key.GetSize() + sizeOfRuns);
-    std::byte *const bytes = memory + sizeof(PlainFaceType);
-    std::memcpy(bytes, key.GetBytes(), key.GetSize());
-    std::memcpy(bytes + key.GetSize(), runs, sizeOfRuns);
-    int const numOthers =
-        std::accumulate(static_cast<Run const *>(runs), end, 0,
-                        [](int count, Run const &run) { return count + run.numPoints; });
-    return new (memory) PlainFaceType(types, key, numVerts, int(end - runs), numOthers);
-}
+                             GrowingPatch const &patch)
+    : hash(std::hash<PlainFaceKey>()(key)), _types(types), _key(key), _numVerts(numVerts),
+      _runs(patch.GetRuns()),
+      _numPoints(std::accumulate(_runs.begin(), _runs.end(), numVerts,
+                                 [](int count, Run const &run) { return count + run.numPoints; })),
+      _isInLattice(isInLattice(key, numVerts)) {}
 
 PlainFaceType::~PlainFaceType() { delete _rings.load(); }
 
-bool PlainFaceType::HasKey(PlainFaceKey const &key) const {
-    return key.GetSize() == _keySize && std::memcmp(key.GetBytes(), getKey(), _keySize) == 0;
-}
-
 // A vertex has its neighbours in the patch.
-static_assert(PlainFaceKey::kMaxVerts <= InnerRings::kMaxFaces);
+static_assert(GrowingPatch::kMaxInner <= InnerRings::kMaxFaces);
 
 // If several threads do so at once, the first one makes it for all.
 FaceRings const &PlainFaceType::makeRings() const {
@@ -123,9 +91,8 @@ CellType const &PlainFaceType::make() const {
 
 CellPatch PlainFaceType::makeCell() const {
     static thread_local GrowingPatch patch;
-    patch.Start(getFaceSize(getKey()));
-    patch.KeepFaces();
-    grow(getKey(), _numVerts, patch);
+    patch.Start(std::uint8_t(_key[0]) & ~kHasSizes);
+    grow(_key, _numVerts, patch);
     std::vector<int> faceSizes;
     std::vector<Far::Index> faceVerts;
     patch.GetFaces(faceSizes, faceVerts);
@@ -137,14 +104,13 @@ namespace {
 
 // Finds the vertices of a patch in another one, from a corner of both on; false where one of the patches has
 // vertices that are the same, and the other has not.
-bool findInPatch(CellPatch const &part, int firstCorner, CellPatch const &all, int firstOfAll,
+bool findInPatch(CellPatch const &part, int firstCorner, PatchCorners const &ofAll, int firstOfAll,
                  std::vector<int> &verts) {
     constexpr int kNone = -1;
     FarExt::internal::LimitPatch const &patch = part.patch;
     PatchCorners const corners(patch);
-    PatchCorners const ofAll(all.patch);
     std::vector<int> found(patch.faceVerts.size(), kNone); // by corner
-    std::vector<int> ofVerts(all.patch.sources.size(), kNone);
+    std::vector<int> ofVerts(ofAll.GetPatch().sources.size(), kNone);
     verts.assign(patch.sources.size(), kNone);
     // Adds the vertices of a face, from one of its corners on.
     auto const add = [&](int corner, int cornerOfAll) {
@@ -172,7 +138,7 @@ bool findInPatch(CellPatch const &part, int firstCorner, CellPatch const &all, i
     for (std::size_t corner = 0; corner < found.size(); ++corner) {
         int const next = patch.otherCorners[corner];
         if (next >= 0 && found[std::size_t(next)] == kNone) {
-            int const other = all.patch.otherCorners[std::size_t(found[corner])];
+            int const other = ofAll.GetPatch().otherCorners[std::size_t(found[corner])];
             if (other < 0 || !add(next, other)) {
                 return false;
             }
@@ -183,65 +149,55 @@ bool findInPatch(CellPatch const &part, int firstCorner, CellPatch const &all, i
 
 } // namespace
 
-CellType::BorderItem PlainFaceType::makeLatticeItem(CellPatch const &cell, int const *turns,
+CellType::BorderItem PlainFaceType::makeLatticeItem(CellPatch const &cell,
+                                                    PatchCorners const &corners, int const *turns,
                                                     std::size_t item) const {
     auto const numEdges = std::size_t(cell.GetNumCorners());
     bool const isEdge = item < numEdges;
     CellRules const &rules = _types._ringCells.GetRules();
-    LatticeItem const &lattice = _types._ringCells.FindLatticeItem(
+    CellType const &type = _types._ringCells.FindLatticeItem(
         isEdge ? CellKind::Edge : CellKind::Vertex, cell.GetNumCorners(), [&] {
-            CellPatch patch = std::move(GatherBorder(cell, turns, rules.sdcOptions)[item]);
-            CellType const &type = _types._types.Find(patch, rules);
-            return LatticeItem{std::move(patch), &type};
+            return &_types._types.Find(GatherBorder(cell, turns, rules.sdcOptions, int(item))[item],
+                                       rules);
         });
     // The corner of the face, or of another one, that is the first of the item.
-    PatchCorners const corners(cell.patch);
     auto corner = int(isEdge ? item : item - numEdges);
     for (int i = 0; i < turns[item]; ++i) {
         corner = isEdge ? cell.patch.otherCorners[std::size_t(corner)]
                         : corners.GetNext(cell.patch.otherCorners[std::size_t(corner)], 1);
     }
-    CellType::BorderItem result = {lattice.type, {}, isEdge && turns[item] == 1, nullptr};
-    return findInPatch(lattice.cell, lattice.cell.locals[0], cell, corner, result.points)
+    CellType::BorderItem result = {&type, {}, isEdge && turns[item] == 1, nullptr};
+    CellPatch const lattice = type.MakeCell();
+    return findInPatch(lattice, lattice.locals[0], corners, corner, result.points)
                ? result
                : Get().GetBorderItem(turns, item);
 }
 
 CellType::BorderItem const &PlainFaceType::GetLatticeItem(int const *turns,
                                                           std::size_t item) const {
-    auto const get = [&](std::size_t i, auto const &make) -> CellType::BorderItem const & {
-        int const key[2] = {int(i), turns[i]};
-        return GetRings().GetPatterns().Get<CellType::BorderItem>(
-            PatternTable::GetKind<double>(PatternOf::LatticeItem), key, key + 2, make);
-    };
-    return get(item, [&] {
+    FaceRings const &rings = GetRings();
+    return CellType::FindBorderItem(rings.GetPatterns(), turns, item, [&] {
         CellPatch const cell = makeCell();
-        // The others are asked for, too.
-        FaceRings const &rings = GetRings();
+        PatchCorners const corners(cell.patch);
         int const numEdges = cell.GetNumCorners();
+        std::vector<CellType::BorderItem> items(2 * std::size_t(numEdges));
         for (int i = 0; i < 2 * numEdges; ++i) {
-            bool const isInLattice =
-                i < numEdges ? rings.IsEdgeInLattice(i) : rings.IsVertexInLattice(i - numEdges);
-            if (isInLattice && std::size_t(i) != item) {
-                get(std::size_t(i), [&] { return makeLatticeItem(cell, turns, std::size_t(i)); });
+            if (i < numEdges ? rings.IsEdgeInLattice(i) : rings.IsVertexInLattice(i - numEdges)) {
+                items[std::size_t(i)] = makeLatticeItem(cell, corners, turns, std::size_t(i));
             }
         }
-        return makeLatticeItem(cell, turns, item);
+        return items;
     });
 }
 
 PlainFaceType const &PlainFaceTypes::Add(PlainFaceKey const &key, int numVerts,
                                          GrowingPatch const &patch) {
-    decltype(_entries)::Pointer made;
-    {
-        std::lock_guard<std::mutex> const lock(_mutex);
-        made.reset(PlainFaceType::Make(*this, key, numVerts, patch, _blocks));
-    }
-    auto const [type, isNew] = _entries.Add(
-        std::move(made), [&](PlainFaceType const &other) { return other.HasKey(key); });
+    auto const [type, isNew] =
+        _entries.Add(std::make_unique<PlainFaceType const>(*this, key, numVerts, patch),
+                     [&](PlainFaceType const &other) { return other.HasKey(key); });
     if (isNew) {
         ++_numUnmade;
-        _types.GetMemory().Add(decltype(_entries)::kEntrySize + type->GetSizeOfBytes());
+        _types.GetMemory().Add(decltype(_entries)::kEntrySize + type->GetHeapSize());
     }
     return *type;
 }
@@ -256,7 +212,7 @@ bool PlainFaceGatherer::findVertices(Level const &level, Index face) {
     // The faces of a vertex begin with the one at a place.
     auto const addVertex = [&](Index vert, Index place) {
         FaceWalk::Fan const fan = fans[vert];
-        if (fan.first == fan.end || end == _verts + PlainFaceKey::kMaxVerts) {
+        if (fan.first == fan.end || end == _verts + kMaxVerts) {
             return false;
         }
         *end++ = {vert, place < fan.end ? place : fan.first, fan};
@@ -287,20 +243,20 @@ bool PlainFaceGatherer::findVertices(Level const &level, Index face) {
     }
     _faceSize = size;
     _numVerts = int(end - _verts);
-    _key.Clear();
-    _key.Add(size);
-    std::for_each(_verts, end, [&](Vertex const &vert) { _key.Add(vert.fan.GetNumFaces()); });
+    _key.assign(1, char(size));
+    std::for_each(_verts, end,
+                  [&](Vertex const &vert) { _key.push_back(char(vert.fan.GetNumFaces())); });
     return true;
 }
 
 // Adds the sizes of faces to the key, where they differ; false where they are too many or too large.
 bool PlainFaceGatherer::addSizes(Level const &level) {
-    std::size_t const size = _key.GetSize();
+    std::size_t const size = _key.size();
     bool hasSizes = false;
     for (int i = 0; i < _numVerts; ++i) {
         Vertex const &vert = _verts[i];
         int const numFaces = vert.fan.GetNumFaces();
-        if (_key.IsFull(numFaces)) {
+        if (_key.size() + std::size_t(numFaces) > kMaxKeySize) {
             return false;
         }
         for (int k = 0; k < numFaces; ++k) {
@@ -309,13 +265,13 @@ bool PlainFaceGatherer::addSizes(Level const &level) {
                 return false;
             }
             hasSizes = hasSizes || faceSize != _faceSize;
-            _key.Add(faceSize);
+            _key.push_back(char(faceSize));
         }
     }
     if (hasSizes) {
-        _key.SetFirst(_faceSize | kHasSizes);
+        _key[0] = char(_faceSize | kHasSizes);
     } else {
-        _key.Truncate(size);
+        _key.resize(size);
     }
     return true;
 }
@@ -337,7 +293,7 @@ bool PlainFaceGatherer::writePoints(PlainFaceType const &type, Index *points) {
         *end++ = point;
     };
     std::for_each_n(_verts, _numVerts, [&](Vertex const &vert) { add(vert.vert); });
-    std::for_each(type.GetRuns(), type.GetEndOfRuns(), [&](PlainFaceType::Run const &run) {
+    for (PlainFaceType::Run const &run : type.GetRuns()) {
         Index place = _verts[run.first.vert].GetPlace(run.first.place);
         for (int corner = 1; corner < run.first.corner; ++corner) {
             place = nexts[place].place;
@@ -347,7 +303,7 @@ bool PlainFaceGatherer::writePoints(PlainFaceType const &type, Index *points) {
             place = next.place;
             add(next.vert);
         }
-    });
+    }
     if (!mayBeSame) {
         return true;
     }
@@ -375,11 +331,11 @@ PlainFaceType const *PlainFaceGatherer::findType(PlainFaceTypes &types, FaceWalk
     if (!findVertices(level, face) || (level.faceSizes.size() > 1 && !addSizes(level))) {
         return nullptr;
     }
-    if (PlainFaceType const *const type = types.Find(_key, _key.GetHash())) {
+    if (PlainFaceType const *const type = types.Find(_key)) {
         return type;
     }
     _patch.Start(_faceSize);
-    return grow(_key.GetBytes(), _numVerts, _patch) ? &types.Add(_key, _numVerts, _patch) : nullptr;
+    return grow(_key, _numVerts, _patch) ? &types.Add(_key, _numVerts, _patch) : nullptr;
 }
 
 // False where points are the same.

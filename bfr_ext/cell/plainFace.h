@@ -2,7 +2,6 @@
 #ifndef OPENSUBDIVHEX_BFR_EXT_CELL_PLAIN_FACE_H
 #define OPENSUBDIVHEX_BFR_EXT_CELL_PLAIN_FACE_H
 
-#include "byteBlocks.h"
 #include "cellType.h"
 #include "faceWalk.h"
 #include "growingPatch.h"
@@ -11,7 +10,8 @@
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
-#include <mutex>
+#include <string>
+#include <vector>
 
 namespace OpenSubdivHex::BfrExt::internal {
 
@@ -21,28 +21,7 @@ namespace OpenSubdivHex::BfrExt::internal {
 ///
 /// A face is *plain* where no feature is near and its patch is a disc, no vertices of which are the
 /// same: so the key tells all of the patch.
-class PlainFaceKey {
-public:
-    /// Vertices at most, all of whose faces are in the patch.
-    static constexpr int kMaxVerts = GrowingPatch::kMaxInner;
-    static constexpr std::size_t kMaxSize = 192;
-
-    void Clear() { _size = 0; }
-    void Add(int number) { _bytes[_size++] = std::uint8_t(number); }
-    /// Whether so many numbers more are too many.
-    bool IsFull(int number) const { return _size + std::size_t(number) > kMaxSize; }
-    void SetFirst(int number) { _bytes[0] = std::uint8_t(number); }
-    /// Leaves so many numbers.
-    void Truncate(std::size_t size) { _size = size; }
-
-    std::uint8_t const *GetBytes() const { return _bytes; }
-    std::size_t GetSize() const { return _size; }
-    std::size_t GetHash() const;
-
-private:
-    std::size_t _size = 0;
-    std::uint8_t _bytes[kMaxSize] = {};
-};
+using PlainFaceKey = std::string;
 
 /// \brief All plain base faces of a key.  Their CellType is made when it is first asked for: a face whose
 /// surface is made but not evaluated needs none.
@@ -50,26 +29,22 @@ class PlainFaceType {
 public:
     using Run = GrowingPatch::Run;
 
-    /// Makes one in blocks, in which its bytes lie behind it.
-    ///
     /// \param numVerts  all of whose faces are in the patch
     /// \param patch     that of the key
-    static PlainFaceType const *Make(PlainFaceTypes &types, PlainFaceKey const &key, int numVerts,
-                                     GrowingPatch const &patch, ByteBlocks &blocks);
+    PlainFaceType(PlainFaceTypes &types, PlainFaceKey const &key, int numVerts,
+                  GrowingPatch const &patch);
     ~PlainFaceType();
     PlainFaceType(PlainFaceType const &) = delete;
     PlainFaceType &operator=(PlainFaceType const &) = delete;
 
     std::size_t const hash; ///< of the key
 
-    bool HasKey(PlainFaceKey const &key) const;
-    /// Bytes of the key and the points.
-    std::size_t GetSizeOfBytes() const { return _keySize + std::size_t(_numRuns) * sizeof(Run); }
-    int GetNumPoints() const { return _numVerts + _numOthers; }
+    bool HasKey(PlainFaceKey const &key) const { return key == _key; }
+    /// Without what is made on demand.
+    std::size_t GetHeapSize() const { return _key.capacity() + GetHeapSizes(_runs); }
+    int GetNumPoints() const { return _numPoints; }
     /// The points behind the vertices whose faces are all there.
-    Run const *GetRuns() const { return reinterpret_cast<Run const *>(getKey() + _keySize); }
-    /// The end of these.
-    Run const *GetEndOfRuns() const { return GetRuns() + _numRuns; }
+    std::vector<Run> const &GetRuns() const { return _runs; }
     /// The type that evaluates the points, made on demand.
     CellType const &Get() const {
         CellType const *const type = _type.load(std::memory_order_acquire);
@@ -87,22 +62,18 @@ public:
     CellType::BorderItem const &GetLatticeItem(int const *turns, std::size_t item) const;
 
 private:
-    PlainFaceType(PlainFaceTypes &types, PlainFaceKey const &key, int numVerts, int numRuns,
-                  int numOthers);
-
-    std::uint8_t const *getKey() const { return reinterpret_cast<std::uint8_t const *>(this + 1); }
     CellType const &make() const;
     FaceRings const &makeRings() const;
     FarExt::internal::CellPatch makeCell() const;
-    CellType::BorderItem makeLatticeItem(FarExt::internal::CellPatch const &cell, int const *turns,
+    CellType::BorderItem makeLatticeItem(FarExt::internal::CellPatch const &cell,
+                                         PatchCorners const &corners, int const *turns,
                                          std::size_t item) const;
 
     PlainFaceTypes &_types;
-    // Behind this there are the key, and the runs of other points.
-    std::size_t const _keySize;
+    PlainFaceKey const _key;
     int const _numVerts;
-    int const _numRuns;
-    int const _numOthers;
+    std::vector<Run> const _runs;
+    int const _numPoints;
     bool const _isInLattice;
     mutable std::atomic<FaceRings const *> _rings{nullptr};
     mutable std::atomic<CellType const *> _type{nullptr};
@@ -114,8 +85,9 @@ public:
     PlainFaceTypes(CellTypes &types, RingCells &ringCells) : _types(types), _ringCells(ringCells) {}
 
     /// Null where there is none.
-    PlainFaceType const *Find(PlainFaceKey const &key, std::size_t hash) const {
-        return _entries.Find(hash, [&](PlainFaceType const &type) { return type.HasKey(key); });
+    PlainFaceType const *Find(PlainFaceKey const &key) const {
+        return _entries.Find(std::hash<PlainFaceKey>()(key),
+                             [&](PlainFaceType const &type) { return type.HasKey(key); });
     }
     PlainFaceType const &Add(PlainFaceKey const &key, int numVerts, GrowingPatch const &patch);
     /// How many have no CellType yet.
@@ -124,15 +96,9 @@ public:
 private:
     friend class PlainFaceType;
 
-    struct Destroy {
-        void operator()(PlainFaceType const *type) const { type->~PlainFaceType(); }
-    };
-
     CellTypes &_types;
     RingCells &_ringCells;
-    std::mutex _mutex;
-    ByteBlocks _blocks{1 << 12};
-    EntryTable<PlainFaceType, Destroy> _entries;
+    EntryTable<PlainFaceType> _entries;
     std::atomic<std::size_t> _numUnmade{0};
 };
 
@@ -179,12 +145,13 @@ private:
     bool writePoints(PlainFaceType const &type, Index *points);
     void writeTurns(FarExt::internal::Level const &level, Index face, Index *turns) const;
 
+    static constexpr int kMaxVerts = GrowingPatch::kMaxInner; // all of whose faces are in the patch
     static constexpr std::size_t kNumStamps = 4096;
 
     FaceWalk::Arrays const *_arrays = nullptr; // of the level
     int _faceSize = 0;
     int _numVerts = 0;
-    Vertex _verts[PlainFaceKey::kMaxVerts] = {};
+    Vertex _verts[kMaxVerts] = {};
     PlainFaceKey _key;
     GrowingPatch _patch;
     // By the last digits of points: the number of the search in which there was one.

@@ -19,8 +19,7 @@ public:
     /// The base face.
     static constexpr std::size_t kBase = 0;
     /// Drops all cells, and makes that of a base face, as CellValues::SetBase().
-    template <typename TYPE>
-    void SetBase(TYPE const &type, double const *controlPoints, int length) {
+    void SetBase(BaseType const &type, double const *controlPoints, int length) {
         _size = 0;
         add(1);
         _cells[kBase].values.SetBase(type, controlPoints, length);
@@ -35,13 +34,9 @@ public:
     std::size_t GetFirstChild(std::size_t cell) {
         return _cells[cell].firstChild > 0 ? _cells[cell].firstChild : makeChildren(cell);
     }
-    /// \brief Writes the surface at a corner.
+    /// \brief Writes derivatives at a corner, which span the tangent plane as those by u and v do.
     ///
-    /// Cells whose types few are of have it from their children, so that few limit masks are needed.
-    void EvaluateCorner(std::size_t cell, int corner, double *p) {
-        findCorner(cell, corner).EvaluateCorner(corner, p);
-    }
-    /// Writes derivatives there, which span the tangent plane as those by u and v do.
+    /// Cells whose types few are of have them from their children, so that few limit masks are needed.
     void EvaluateCorner(std::size_t cell, int corner, double *du, double *dv) {
         findCorner(cell, corner).EvaluateCorner(corner, du, dv);
     }

@@ -17,8 +17,8 @@ namespace {
 
 using Cell = std::pair<CellPatch, std::vector<RingLayout>>;
 
-CellRefinement refine(CellPatch const &cell, CellRules const &rules) {
-    return RefineCell(cell, rules.sdcOptions, rules.hexSchemeOptions, rules.interpolation);
+CellRefinement refine(CellPatch const &cell, CellRules const &rules, bool hasStep) {
+    return RefineCell(cell, rules.sdcOptions, rules.hexSchemeOptions, rules.interpolation, hasStep);
 }
 
 // The vertices of the level that a step makes, by row of it.
@@ -78,7 +78,7 @@ RingCells::Key findKey(CellPatch const &cell, PatchCorners const &corners, bool 
 
 // Product of the first step of an edge or a vertex.
 Cell makeItemCell(CellPatch const &item, CellRules const &rules) {
-    return {std::move(refine(item, rules).children[0]),
+    return {std::move(refine(item, rules, false).children[0]),
             FindRingLayouts(item.patch, item.locals, false)};
 }
 
@@ -121,19 +121,19 @@ RingPlaces::RingPlaces(std::vector<Far::Index> const &verts, std::vector<RingLay
     }
 }
 
-void RingPlaces::Order(std::vector<double> const &weights, std::vector<double> &result) const {
-    result.resize(_columns.size());
+std::vector<double> RingPlaces::Order(std::vector<double> const &weights) const {
+    std::vector<double> result(_columns.size());
     for (std::size_t column = 0; column < _columns.size(); ++column) {
         result[column] = weights[std::size_t(_columns[column])];
     }
+    return result;
 }
 
 template <typename REAL>
 std::vector<REAL> const &RingCell::GetVertexWeights() const {
     return _patterns.Get<std::vector<REAL>>(
         PatternTable::GetKind<REAL>(PatternOf::VertexWeights), nullptr, nullptr, [&] {
-            std::vector<double> weights;
-            GetPlaces().Order(_type.GetCornerPoints()[0], weights);
+            std::vector<double> const weights = GetPlaces().Order(_type.GetCornerPoints()[0]);
             return std::vector<REAL>(weights.begin(), weights.end());
         });
 }
@@ -156,17 +156,18 @@ std::unique_ptr<RingCell const> RingCells::make(CellPatch const &cell,
     RingPlaces points(cell.patch.sources, rings);
     if (!_masks.AreUsed()) {
         CellType const &type = _types.Find(cell, GetRules());
-        return std::make_unique<RingCell const>(type, RingStep::First, std::move(points));
+        return std::make_unique<RingCell const>(type, std::move(points));
     }
-    CellRefinement refinement = refine(cell, GetRules());
+    CellRefinement const refinement = refine(cell, GetRules(), cell.kind != CellKind::Vertex);
     std::vector<RingLayout> const inner = FindInnerLayouts(cell.patch, rings);
     if (cell.kind == CellKind::Vertex) {
-        points = RingPlaces(refinement.children[0].patch.sources, inner);
-        CellType const &type = _types.Find(refinement.children[0], GetRules());
-        return std::make_unique<RingCell const>(type, RingStep::Second, std::move(points));
+        CellPatch const &child = refinement.children[0];
+        return std::make_unique<RingCell const>(_types.Find(child, GetRules()),
+                                                RingPlaces(child.patch.sources, inner));
     }
     RingPlaces ofStep(findStepVertices(refinement), inner);
     CellType const &type = _types.Find(cell, GetRules());
+    type.MakeChildren(refinement);
     return std::make_unique<RingCell const>(type, std::move(points), std::move(ofStep));
 }
 
@@ -230,7 +231,7 @@ private:
 
     CellRefinement const &getRefinement() {
         if (!_refinement) {
-            _refinement = refine(_cell, _cells.GetRules());
+            _refinement = refine(_cell, _cells.GetRules(), false);
         }
         return *_refinement;
     }
@@ -270,9 +271,9 @@ private:
         return _cells.Find(kind, key, [&] {
             std::vector<int> turns(2 * std::size_t(_numEdges));
             turns[std::size_t(item)] = turn;
-            return makeItemCell(
-                GatherBorder(_cell, turns.data(), _cells.GetRules().sdcOptions)[std::size_t(item)],
-                _cells.GetRules());
+            return makeItemCell(GatherBorder(_cell, turns.data(), _cells.GetRules().sdcOptions,
+                                             item)[std::size_t(item)],
+                                _cells.GetRules());
         });
     }
 

@@ -40,7 +40,7 @@ public:
         }
     }
     /// Weights by column from those by vertex.
-    void Order(std::vector<double> const &weights, std::vector<double> &result) const;
+    std::vector<double> Order(std::vector<double> const &weights) const;
     /// Appends all that tells them from others.
     void AddKey(std::vector<int> &key) const;
 
@@ -89,19 +89,11 @@ private:
 /// type of any cell that has the same there; a V-vertex is taken for what it becomes.
 class RingCell {
 public:
-    /// A cell evaluated as sums of its own points.
-    ///
-    /// \param step    that made it
     /// \param points  of the type
-    RingCell(CellType const &type, RingStep step, RingPlaces points)
-        : _type(type), _lastStep(step), _isInner(false), _points(std::move(points)),
+    /// \param inner   what the step of the type makes, by row of it, if that is what sums are of
+    explicit RingCell(CellType const &type, RingPlaces points, RingPlaces inner = {})
+        : _type(type), _points(std::move(points)), _inner(std::move(inner)),
           _patterns(type.GetMemory()) {}
-    /// A cell evaluated as sums of the points behind the second step.
-    ///
-    /// \param inner  what the step of the type makes, by row of it
-    RingCell(CellType const &type, RingPlaces points, RingPlaces inner)
-        : _type(type), _lastStep(RingStep::Second), _isInner(true), _points(std::move(points)),
-          _inner(std::move(inner)), _patterns(type.GetMemory()) {}
 
     /// An inner cell may have the type of another one that is equal behind the step: before the step, only the
     /// order of rows is the cell's own.
@@ -109,11 +101,10 @@ public:
     /// All that a cell is but its type.
     std::vector<int> GetKey() const;
     /// Whether its sums are of what the step of the type makes, and not of the points of the type.
-    bool IsInner() const { return _isInner; }
-    /// The step that makes what its sums are of.
-    RingStep GetLastStep() const { return _lastStep; }
+    bool IsInner() const { return !_inner.GetColumns().empty(); }
+    StencilOf GetSources() const { return IsInner() ? StencilOf::Step : StencilOf::Points; }
     /// The places of the cell's points.
-    RingPlaces const &GetPlaces() const { return _isInner ? _inner : _points; }
+    RingPlaces const &GetPlaces() const { return IsInner() ? _inner : _points; }
     std::vector<int> const &GetColumns() const { return GetPlaces().GetColumns(); }
     /// The points of the type.
     RingPlaces const &GetPoints() const { return _points; }
@@ -127,19 +118,9 @@ public:
 
 private:
     CellType const &_type;
-    RingStep const _lastStep;
-    bool const _isInner;
     RingPlaces const _points;
     RingPlaces const _inner;
     mutable PatternTable _patterns;
-};
-
-/// An edge or a vertex in a lattice, of any face, with its patch.
-struct LatticeItem {
-    std::size_t GetHeapSize() const { return GetCellHeapSize(cell); }
-
-    FarExt::internal::CellPatch cell;
-    CellType const *type;
 };
 
 /// Product of the first step of an edge of plain base faces, seen from one of them.
@@ -192,9 +173,9 @@ public:
     /// \brief Returns the first result of make() for a kind of items in the lattice of a size of faces: mostly all
     /// look like it.
     template <typename MAKE>
-    LatticeItem const &FindLatticeItem(FarExt::internal::CellKind kind, int faceSize,
-                                       MAKE const &make) {
-        return _latticeItems.Get<LatticeItem>(int(kind), &faceSize, &faceSize + 1, make);
+    CellType const &FindLatticeItem(FarExt::internal::CellKind kind, int faceSize,
+                                    MAKE const &make) {
+        return *find<CellType const *>(_latticeItems, int(kind), {faceSize}, make);
     }
 
 private:
@@ -211,7 +192,7 @@ private:
     InnerMasks _masks;
     PatternTable _found; // pointers, by kind and rings
     PatternTable _faces;
-    PatternTable _latticeItems;
+    PatternTable _latticeItems; // pointers to types
 };
 
 /// \brief An edge or a vertex of a base face that has rings of its own, since the face itself is not plain or

@@ -12,46 +12,6 @@ namespace OpenSubdivHex::BfrExt::internal {
 
 using FarExt::internal::LimitPatch;
 
-namespace {
-
-// The vertices that a step makes of a patch, which has vertices of a level.
-class MadeVertices {
-public:
-    explicit MadeVertices(LimitPatch const &patch) : _numVerts(int(patch.sources.size())) {
-        for (int vert = 0; vert < _numVerts; ++vert) {
-            _vVertices[patch.sources[std::size_t(vert)]] = vert;
-        }
-        PatchCorners const corners(patch);
-        auto const getVertex = [&](int corner) {
-            return patch.sources[std::size_t(corners.GetVertex(corner))];
-        };
-        for (int corner = 0; corner < int(patch.faceVerts.size()); ++corner) {
-            _fVertices[{getVertex(corner), getVertex(corners.GetNext(corner, 1))}] =
-                _numVerts + corner;
-        }
-    }
-
-    // The V-vertex of a vertex of the level.
-    int FindVVertex(int vert) const { return find(_vVertices, vert); }
-    // The F-vertex at a vertex in the face that has another one behind it.
-    int FindFVertex(int vert, int next) const {
-        return find(_fVertices, std::make_pair(vert, next));
-    }
-
-private:
-    template <typename MAP>
-    static int find(MAP const &map, typename MAP::key_type const &key) {
-        auto const found = map.find(key);
-        return found == map.end() ? RingLayout::kNone : found->second;
-    }
-
-    int const _numVerts;
-    std::map<int, int> _vVertices;
-    std::map<std::pair<int, int>, int> _fVertices;
-};
-
-} // namespace
-
 RingLayout RingLayout::From(int firstFace) const {
     int const numFaces = int(faceSizes.size());
     firstFace = (firstFace + numFaces) % numFaces;
@@ -107,16 +67,33 @@ std::vector<RingLayout> FindRingLayouts(LimitPatch const &patch, std::vector<int
 
 std::vector<RingLayout> FindInnerLayouts(LimitPatch const &patch,
                                          std::vector<RingLayout> const &rings) {
-    MadeVertices const made(patch);
+    // The vertices that the step makes of the patch: F-vertices by the vertices of the level at their corners and behind
+    // these, and V-vertices by their vertex and none.
+    std::map<std::pair<int, int>, int> made;
+    PatchCorners const corners(patch);
+    int const numVerts = int(patch.sources.size());
+    for (int vert = 0; vert < numVerts; ++vert) {
+        made[{patch.sources[std::size_t(vert)], RingLayout::kNone}] = vert;
+    }
+    auto const getSource = [&](int corner) {
+        return patch.sources[std::size_t(corners.GetVertex(corner))];
+    };
+    for (int corner = 0; corner < int(patch.faceVerts.size()); ++corner) {
+        made[{getSource(corner), getSource(corners.GetNext(corner, 1))}] = numVerts + corner;
+    }
+    auto const find = [&](int vert, int next) {
+        auto const found = made.find({vert, next});
+        return found == made.end() ? RingLayout::kNone : found->second;
+    };
     std::vector<RingLayout> layouts;
     layouts.reserve(rings.size());
     for (RingLayout const &ring : rings) {
         int const outerCenter = ring.verts[0];
-        int const center = made.FindVVertex(outerCenter);
+        int const center = find(outerCenter, RingLayout::kNone);
         RingLayout layout = {ring.faceSizes, {}, {}};
         auto const addFVertices = [&](int const *verts, int size) {
             for (int i = 0; i < size; ++i) {
-                layout.verts.push_back(made.FindFVertex(verts[i], verts[(i + 1) % size]));
+                layout.verts.push_back(find(verts[i], verts[(i + 1) % size]));
             }
         };
         // The block of a face: the vertex, the neighbour where the face begins, and the F-vertices.
@@ -128,7 +105,7 @@ std::vector<RingLayout> FindInnerLayouts(LimitPatch const &patch,
             std::array<int, 6> const hexagon = {outerCenter, *firstBefore, *lastBefore,
                                                 *neighbor,   verts[1],     verts[0]};
             layout.verts.push_back(center);
-            layout.verts.push_back(made.FindVVertex(verts[0]));
+            layout.verts.push_back(find(verts[0], RingLayout::kNone));
             addFVertices(hexagon.data(), int(hexagon.size()));
             addFVertices(verts, size);
             firstBefore = verts;

@@ -71,10 +71,10 @@ std::vector<Pair> findLatticePlaces(CellType const &type) {
     if (type.GetKind() != FarExt::internal::CellKind::Half || !type.IsRegular()) {
         return {};
     }
-    CellType::Corner const &corner = type.GetCorners()[0];
+    auto const &[along, across] = type.GetDerivatives(0).rows;
     std::vector<Pair> places;
-    for (std::size_t i = 0; i < corner.point.size(); ++i) {
-        places.push_back({corner.derivatives[0][i], corner.derivatives[1][i]});
+    for (std::size_t i = 0; i < along.size(); ++i) {
+        places.push_back({along[i], across[i]});
     }
     for (int round = 0; round < kNumRounds; ++round) {
         places = applyStep(type, 0, places);

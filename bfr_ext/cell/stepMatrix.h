@@ -89,22 +89,6 @@ public:
         });
     }
 
-    /// Overload for one number per point.
-    void Apply(std::vector<double> const &numbers, std::vector<double> &result) const {
-        result.resize(_numRows);
-        use([&](auto const &arrays) {
-            auto const *entry = arrays.entries;
-            for (std::size_t row = 0; row < _numRows; ++row) {
-                auto const *const end = arrays.entries + arrays.ends[row];
-                double sum = 0;
-                for (; entry != end; ++entry) {
-                    sum += arrays.weights[entry->weight] * numbers[entry->point];
-                }
-                result[row] = sum;
-            }
-        });
-    }
-
 private:
     // How large numbers are.
     enum class Width { Bytes, Shorts, Longs };
@@ -175,14 +159,6 @@ public:
         for (std::size_t i = 0; i < numRows; ++i) {
             result =
                 StepMatrix::CopyPadded(points + getMatrixRow(i) * paddedSize, paddedSize, result);
-        }
-    }
-
-    /// Overload for one number per point.
-    void CopyNumbers(std::vector<double> const &numbers, std::vector<double> &result) const {
-        result.resize(GetNumRows());
-        for (std::size_t i = 0; i < result.size(); ++i) {
-            result[i] = numbers[getMatrixRow(i)];
         }
     }
 

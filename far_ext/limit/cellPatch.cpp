@@ -145,16 +145,20 @@ void FindBaseCellTurns(SurfaceFaces const &faces, Index face, int *turns) {
 }
 
 std::vector<CellPatch> GatherBorder(CellPatch const &baseCell, int const *turns,
-                                    Sdc::Options sdcOptions) {
+                                    Sdc::Options sdcOptions, int onlyItem) {
     ExecutorScope const alone(nullptr, 1);
     Level level;
     BuildPatchLevel(baseCell.patch, level);
     LimitPatchGatherer gatherer(level, sdcOptions, kMaskOfBase);
     int const size = baseCell.GetNumCorners();
     std::vector<CellPatch> border;
+    auto const isWanted = [&](int item) { return onlyItem < 0 || item == onlyItem; };
     for (int i = 0; i < size; ++i) {
         bool const isLong = i == 0 && baseCell.kind == CellKind::HalfPolygon;
         border.push_back({isLong ? CellKind::LongEdge : CellKind::Edge, {}, {}, {}});
+        if (!isWanted(i)) {
+            continue;
+        }
         int const local = baseCell.locals[std::size_t(i)];
         if (isLong && !level.IsHalfFace(0)) {
             // A diagonal, from its start on.
@@ -170,6 +174,9 @@ std::vector<CellPatch> GatherBorder(CellPatch const &baseCell, int const *turns,
     }
     for (int i = 0; i < size; ++i) {
         border.push_back({CellKind::Vertex, {}, {}, {}});
+        if (!isWanted(size + i)) {
+            continue;
+        }
         int const local = baseCell.locals[std::size_t(i)];
         ForEachFan(level, level.faceVerts[local], [&](VertexFan const &fan) {
             int const numFaces = int(fan.end - fan.begin);
@@ -309,12 +316,16 @@ private:
 } // namespace
 
 CellRefinement RefineCell(CellPatch const &cell, Sdc::Options sdcOptions,
-                          HexSchemeOptions const &schemeOptions, Interpolation interpolation) {
+                          HexSchemeOptions const &schemeOptions, Interpolation interpolation,
+                          bool hasStep) {
     ExecutorScope const alone(nullptr, 1);
     RefinedPatch const refined(cell.patch, sdcOptions, schemeOptions.faceMask);
     Refinement const &refinement = refined.refinement;
     CellRefinement result;
     result.children = CellRefiner(refinement, sdcOptions, schemeOptions.faceMask, cell).Refine();
+    if (!hasStep) {
+        return result;
+    }
     std::vector<int> rowOfVert(std::size_t(refined.child.numVertices), -1);
     for (CellPatch const &child : result.children) {
         for (Index const vert : child.patch.sources) {

@@ -64,9 +64,11 @@ OPENSUBDIVHEX_API CellPatch MakePlainBaseCell(std::vector<int> faceSizes,
 ///               its fan lie before the face
 OPENSUBDIVHEX_API void FindBaseCellTurns(SurfaceFaces const &faces, Far::Index face, int *turns);
 
-/// The edges and then the vertices of a base cell, whose patch's vertices are their sources.
+/// \brief The edges and then the vertices of a base cell, whose patch's vertices are their sources.
+///
+/// \param onlyItem  the one that is gathered, others being empty; -1: all are
 OPENSUBDIVHEX_API std::vector<CellPatch> GatherBorder(CellPatch const &baseCell, int const *turns,
-                                                      Sdc::Options sdcOptions);
+                                                      Sdc::Options sdcOptions, int onlyItem = -1);
 
 /// \brief The children of a cell in one step: cells, and the vertices that their patches
 /// have, each once, in terms of those of the cell's patch.
@@ -82,9 +84,11 @@ struct CellRefinement {
 ///
 /// An edge becomes the long edge between its ends; a long edge becomes the edge at its start, the long
 /// edge in its middle and the edge at its end; a vertex becomes the V-vertex.
+///
+/// \param hasStep  else there are only children
 OPENSUBDIVHEX_API CellRefinement RefineCell(CellPatch const &cell, Sdc::Options sdcOptions,
                                             HexSchemeOptions const &schemeOptions,
-                                            Interpolation interpolation);
+                                            Interpolation interpolation, bool hasStep = true);
 
 /// Calls function(refinement, masks) for a hexagonal step of a patch and the masks of the step behind it.
 OPENSUBDIVHEX_API void

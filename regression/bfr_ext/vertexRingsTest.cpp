@@ -21,6 +21,7 @@ namespace OpenSubdivHex::Regression::vertexRingsTest {
 using BfrExt::internal::CellRules;
 using BfrExt::internal::CellType;
 using BfrExt::internal::CellTypes;
+using BfrExt::internal::ChildStep;
 using BfrExt::internal::FaceRings;
 using BfrExt::internal::PlainFaceGatherer;
 using BfrExt::internal::PlainFaceType;
@@ -106,12 +107,11 @@ std::vector<double> step(CellType const &type, std::vector<double> const &points
 /// These points, by point of a child.
 std::vector<double> stepTo(CellType const &type, std::size_t child,
                            std::vector<double> const &points) {
-    CellType::Child const &to = type.GetChildren()[child];
-    std::vector<double> numbers(type.GetStep().GetNumRows());
-    std::iota(numbers.begin(), numbers.end(), 0.0);
-    std::vector<double> rows;
-    to.step.CopyNumbers(numbers, rows);
-    return pick(step(type, points), kSize, {rows.begin(), rows.end()});
+    ChildStep const &to = type.GetChildren()[child].step;
+    std::vector<double> const padded = pad(step(type, points)); // of which CopyPoints() takes some
+    std::vector<double> own(to.GetNumRows() * StepMatrix::GetPaddedSize(kSize));
+    to.CopyPoints(padded.data(), StepMatrix::GetPaddedSize(kSize), own.data());
+    return pick(own, StepMatrix::GetPaddedSize(kSize), makeNumbers(to.GetNumRows()));
 }
 
 /// Expects that two types are the same or, behind another step, that what they become is.

@@ -38,6 +38,8 @@ using BfrExt::CellVisibility;
 using BfrExt::Polyline;
 using BfrExt::Surface;
 using BfrExt::View;
+using BfrExt::internal::BaseType;
+using BfrExt::internal::CellRules;
 using BfrExt::internal::CellValues;
 using BfrExt::internal::RefinedCells;
 
@@ -68,11 +70,10 @@ private:
             double const *const p = &_meshPoints[3 * std::size_t(vert)];
             points.insert(points.end(), p, p + 3);
         }
-        cells.SetBase(_types.Find(std::move(cell), {_refiner.GetSchemeOptions(),
-                                                    FarExt::internal::GetStepsToLimit(
-                                                        _refiner.GetHexSchemeOptions()),
-                                                    FarExt::Interpolation::Vertex}),
-                      points.data(), 3);
+        CellRules const rules = {_refiner.GetSchemeOptions(),
+                                 FarExt::internal::GetStepsToLimit(_refiner.GetHexSchemeOptions()),
+                                 FarExt::Interpolation::Vertex};
+        cells.SetBase(BaseType(_types.Find(cell, rules)), points.data(), 3);
     }
 
     FarExt::TopologyRefiner const &_refiner;
