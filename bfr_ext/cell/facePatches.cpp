@@ -789,10 +789,13 @@ void FacePatches<REAL>::Evaluate(Bfr::Parameterization const &parameterization, 
              (sizeof(_numInFirst) + sizeof(_numParts) + sizeof(_parts)) / sizeof(int));
     BfrPlace const ofFace = FindBfrPlace(parameterization, shape, uv, 0);
     PatchPlace place;
+    constexpr int kUsualGroups = 3;
     findPatchPlace(ofFace, shape, level, numDerivatives, place, [&] {
         auto const [part, block] = findBlock(level, place.patch);
-        prefetch(block, 1);
+        constexpr int kGroup = PatchBlock<REAL>::kGroup;
+        prefetch(block->columns, kUsualGroups * kGroup);
         prefetch(points + part->firstPoint * stride, part->numPoints * stride);
+        prefetch(block->weights, kNumPatchPoints * kGroup); // of the first group
     });
     auto const [part, block] = findBlock(level, place.patch);
     SumUpPatch(

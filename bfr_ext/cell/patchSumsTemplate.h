@@ -159,35 +159,6 @@ private:
     REAL _shares[4];
 };
 
-/// \brief Some of the points of a block, number by number.
-template <typename REAL>
-class BlockPoints {
-public:
-    static constexpr int kGroup = PatchBlock<REAL>::kGroup;
-    static constexpr int kMaxGroups = 8;
-
-    /// \param first         the first group
-    /// \param size, stride  as of PatchKernel::Write()
-    template <typename SIZE, typename STRIDE>
-    OPENSUBDIVHEX_INLINE void Load(PatchBlock<REAL> const &block, int first, REAL const *points,
-                                   SIZE size, STRIDE stride) {
-        _numGroups = std::min(kMaxGroups, block.numColumns / kGroup - first);
-        int const *columns = block.columns + first * kGroup;
-        for (int i = 0; i < _numGroups; ++i, columns += kGroup) {
-            PointColumns<REAL>::Load(points, stride, size, columns, _numbers[i]);
-        }
-    }
-
-    int GetNumGroups() const { return _numGroups; }
-    typename PointColumns<REAL>::Numbers const &operator[](int group) const {
-        return _numbers[group];
-    }
-
-private:
-    int _numGroups;
-    typename PointColumns<REAL>::Numbers _numbers[kMaxGroups];
-};
-
 /// \brief The point of a patch and its derivatives, as far as NUM_DERIVATIVES asks.
 ///
 /// The rows of a block are weighed along s, then along t, and the columns by the result.
@@ -199,26 +170,21 @@ public:
 
     /// Writes \p size numbers of the results, no more than four, from the first one on.
     ///
-    /// \param points        those of the block, from the first one on
     /// \param size, stride  integral constants where they are known
     template <typename SIZE, typename STRIDE>
-    OPENSUBDIVHEX_INLINE void Write(BlockPoints<REAL> &points, int first, SIZE size,
-                                    STRIDE stride) const {
+    OPENSUBDIVHEX_INLINE void Write(int first, SIZE size, STRIDE stride) const {
         constexpr std::make_index_sequence<kNumSums> kAllSums{};
         ColumnSums sums[kNumSums] = {};
         REAL const *rows = _all.block.weights;
-        int const numGroups = _all.block.numColumns / kGroup;
-        for (int group = 0;;) {
-            for (int i = 0; i < points.GetNumGroups(); ++i, rows += kNumPatchPoints * kGroup) {
-                ColumnLanes weights[kNumSums] = {};
-                weighColumns(rows, weights);
-                addProducts(weights, points[i], size, sums, kAllSums);
-            }
-            group += points.GetNumGroups();
-            if (group >= numGroups) {
-                break;
-            }
-            points.Load(_all.block, group, _all.points + first, size, stride);
+        for (int column = 0; column < _all.block.numColumns; column += kGroup) {
+            // Points are read while their weights are made.
+            ColumnSums points;
+            PointColumns<REAL>::Load(_all.points + first, stride, size, _all.block.columns + column,
+                                     points);
+            ColumnLanes weights[kNumSums] = {};
+            weighColumns(rows, weights);
+            addProducts(weights, points, size, sums, kAllSums);
+            rows += kNumPatchPoints * kGroup;
         }
         typename Point::Lanes bySt[kNumSums];
         sumUp(sums, bySt, kAllSums);
@@ -319,20 +285,14 @@ private:
 
 template <int NUM_DERIVATIVES, typename REAL>
 void sumUpPatch(PatchSums<REAL> const &sums) {
-    // Points are there by the time that the place is found.
+    PatchKernel<NUM_DERIVATIVES, REAL> const kernel(sums);
     if (sums.size == 3 && sums.stride == 3) { // by far the most
         constexpr std::integral_constant<int, 3> kThree{};
-        BlockPoints<REAL> points;
-        points.Load(sums.block, 0, sums.points, kThree, kThree);
-        PatchKernel<NUM_DERIVATIVES, REAL>(sums).Write(points, 0, kThree, kThree);
+        kernel.Write(0, kThree, kThree);
         return;
     }
-    PatchKernel<NUM_DERIVATIVES, REAL> const kernel(sums);
     for (int first = 0; first < sums.size; first += kNumPointLanes) {
-        int const size = std::min(kNumPointLanes, sums.size - first);
-        BlockPoints<REAL> points;
-        points.Load(sums.block, 0, sums.points + first, size, sums.stride);
-        kernel.Write(points, first, size, sums.stride);
+        kernel.Write(first, std::min(kNumPointLanes, sums.size - first), sums.stride);
     }
 }
 
