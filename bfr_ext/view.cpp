@@ -113,8 +113,12 @@ private:
 class FaceToMeasure {
 public:
     /// \param indices  which points are those of the face; null: all in turn
-    void Set(BaseFace const &face, PointArray const &points, Far::Index const *indices) {
+    /// \param shared   rings that faces share, or null
+    void Set(BaseFace const &face, PointArray const &points, Far::Index const *indices,
+             SharedRings<float> *shared) {
         _face = &face;
+        _sources = {points.floats, points.stride, 3,     std::size_t(face.numPoints),
+                    nullptr,       indices,       shared};
         _points.resize(3 * std::size_t(face.numPoints));
         for (int i = 0; i < face.numPoints; ++i) {
             Vector3 const point = points[indices ? indices[i] : i];
@@ -126,7 +130,11 @@ public:
     FaceShape GetShape() const { return GetType().GetShape(_face->size); }
     void SetCells(RefinedCells &cells) const { cells.SetBase(GetType(), _points.data(), 3); }
     void Sample(CellGrid &grid, std::vector<double> &samples) const {
-        grid.Sample(GetType(), _points.data(), samples);
+        if (_sources.points && GetType().GetPlain()) {
+            grid.Sample(*_face, _sources, samples);
+        } else {
+            grid.Sample(GetType(), _points.data(), samples);
+        }
     }
     /// Whether the hull of its points is outside of the picture, which contains the surface.
     bool IsOutside(ViewGeometry const &geometry) const {
@@ -147,6 +155,7 @@ public:
 
 private:
     BaseFace const *_face = nullptr;
+    RingSources<float> _sources = {}; // none of points in double precision
     std::vector<double> _points;
 };
 
@@ -582,7 +591,8 @@ public:
             _face = face;
             _surface.Clear();
             if (_factory.TryInit(face, FarExt::Interpolation::Vertex, -1, _surface).IsOk()) {
-                _base.Set(_surface.GetFace(), _meshPoints, _surface.GetFace().GetPoints());
+                _base.Set(_surface.GetFace(), _meshPoints, _surface.GetFace().GetPoints(),
+                          &_shared);
             }
         }
         return _surface.IsValid() ? &_base : nullptr;
@@ -593,6 +603,7 @@ private:
     PointArray const _meshPoints;
     Far::Index _face = Far::INDEX_INVALID;
     Surface<float> _surface;
+    SharedRings<float> _shared;
     FaceToMeasure _base;
 };
 
@@ -671,7 +682,7 @@ View::Options const &View::GetOptions() const { return _data->options; }
 CellTree View::makeTree(BaseFace const &face, internal::PointArray const &controlPoints,
                         CellTree const *previous, std::vector<CellVisibility> *visibility) const {
     internal::FaceToMeasure base;
-    base.Set(face, controlPoints, nullptr);
+    base.Set(face, controlPoints, nullptr, nullptr);
     internal::FaceMeasures measures;
     CellTree tree(base.GetShape());
     internal::refineTree(
@@ -683,7 +694,7 @@ CellTree View::makeTree(BaseFace const &face, internal::PointArray const &contro
 Polyline View::makeEdge(BaseFace const &face, int edge, internal::PointArray const &controlPoints,
                         Polyline const *previous) const {
     internal::FaceToMeasure base;
-    base.Set(face, controlPoints, nullptr);
+    base.Set(face, controlPoints, nullptr, nullptr);
     return internal::makePolyline(*_data, base, edge, previous);
 }
 

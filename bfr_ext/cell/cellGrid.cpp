@@ -82,6 +82,16 @@ void CellGrid::Sample(BaseType const &type, double const *controlPoints,
     });
 }
 
+void CellGrid::Sample(BaseFace const &face, RingSources<float> const &sources,
+                      std::vector<double> &samples) {
+    PlainFaceType const &plain = *face.type.GetPlain();
+    _ringValues.Set(plain.GetRings().GetRings(), face.GetTurns() + face.size, sources);
+    _samples.resize(3 * _places.GetSize());
+    float *const results[1] = {_samples.data()};
+    _evaluator.Evaluate(plain, _ringValues, _planOfBase, results, 3);
+    samples.assign(_samples.begin(), _samples.end());
+}
+
 // Has evaluate(results) make the samples from the points in single precision.
 template <typename FUNCTION>
 void CellGrid::sample(double const *points, std::size_t stride, int numPoints,

@@ -15,7 +15,8 @@ namespace OpenSubdivHex::BfrExt::internal {
 /// the surface at these places, the *samples*, a cell and its children are measured.
 ///
 /// Samples of a cell are made as the places of a leaf of tessellations are, those of a base face as its tessellation of level 2
-/// is: in single precision, which the cells up to two steps on can do with, relative to the first point and the size of all.
+/// is: in single precision, which the cells up to two steps on can do with.  They are relative to the first point and the
+/// size of all, but of rings that faces share, whose points are as precise as those of the mesh.
 ///
 /// One thread uses it at a time.
 class CellGrid {
@@ -32,6 +33,9 @@ public:
     void Sample(CellValues const &cell, std::vector<double> &samples);
     /// Overload for a base face, whose control points are three numbers each, without gaps.
     void Sample(BaseType const &type, double const *controlPoints, std::vector<double> &samples);
+    /// Overload for a plain base face that is not in a lattice.
+    void Sample(BaseFace const &face, RingSources<float> const &sources,
+                std::vector<double> &samples);
 
     /// Measures the cell, but where it faces.
     void Measure(std::vector<double> const &samples, CellMeasures &cell) const;

@@ -17,6 +17,7 @@
 #include "regression/far_ext/referenceMatch.h"
 #include "regression/shapes/featureShapes.h"
 #include "regression/shapes/shapeDescriptor.h"
+#include "regression/shapes/torus.h"
 
 #include <gtest/gtest.h>
 
@@ -1006,6 +1007,32 @@ TEST(View, ForestsAreTheSameForAnyThreadsAndTypes) {
         sum += count;
     }
     EXPECT_EQ(sum, numLeaves);
+}
+
+// More faces than a thread remembers rings of.
+TEST(View, FacesThatShareRingsHaveTheTreesThatTheyHaveAlone) {
+    Shape const shape = MakeTorus(48, 48, TorusFaces::IrregularTriangles);
+    auto const refiner = makeRefiner(shape);
+    auto const factory = BfrExt::SurfaceFactory::Create(*refiner);
+    std::vector<float> const positions(shape.positions.begin(), shape.positions.end());
+    std::mt19937 random(4);
+    View const view(makeRandomCamera(shape.positions, random), View::Options().SetFlatness(0.05));
+    CellForest const forest = view.MakeForest(*factory, positions.data(), 3);
+    std::map<int, int> numFaces; // by number of cells
+    for (int face = 0; face < forest.GetNumFaces(); ++face) {
+        Surface<float> surface;
+        ASSERT_TRUE(factory->InitVertexSurface(face, &surface));
+        std::vector<float> control(3 * std::size_t(surface.GetNumControlPoints()));
+        surface.GatherControlPoints(positions.data(), 3, control.data(), 3);
+        CellTree const alone = view.MakeTree(surface, control.data(), 3);
+        CellTree const &tree = forest.GetTree(face);
+        ASSERT_EQ(tree.GetNumCells(), alone.GetNumCells()) << "face " << face;
+        for (int cell = 0; cell < tree.GetNumCells(); ++cell) {
+            ASSERT_EQ(tree.GetFirstChild(cell), alone.GetFirstChild(cell)) << "face " << face;
+        }
+        ++numFaces[tree.GetNumCells()];
+    }
+    EXPECT_GT(numFaces.size(), 5U);
 }
 
 /// The surface's heights over the plane of a cell's corners, at the corners of cells some steps on.
