@@ -15,10 +15,13 @@ namespace OpenSubdivHex::BfrExt::internal {
 ///
 /// Any number of threads may use it; what is there already is found without a lock.
 ///
-/// \tparam ENTRY  has a member hash, a std::size_t
-template <typename ENTRY>
+/// \tparam ENTRY   has a member hash, a std::size_t
+/// \tparam DELETE  what becomes of entries
+template <typename ENTRY, typename DELETE = std::default_delete<ENTRY const>>
 class EntryTable {
 public:
+    using Pointer = std::unique_ptr<ENTRY const, DELETE>;
+
     /// Bytes that an entry takes, with its part of the table, without what it has on the heap.
     static constexpr std::size_t kEntrySize = sizeof(ENTRY) + 5 * sizeof(void *);
 
@@ -35,7 +38,7 @@ public:
     /// Adds an entry unless another thread was faster.
     /// \return  the one that is there, and whether it is this one
     template <typename SAME>
-    std::pair<ENTRY const *, bool> Add(std::unique_ptr<ENTRY const> entry, SAME const &isSame) {
+    std::pair<ENTRY const *, bool> Add(Pointer entry, SAME const &isSame) {
         std::lock_guard<std::mutex> const lock(_mutex);
         if (ENTRY const *const found =
                 find(_slots.load(std::memory_order_relaxed), entry->hash, isSame)) {
@@ -94,7 +97,7 @@ private:
     std::atomic<Slots const *> _slots{nullptr};
     std::mutex _mutex;
     std::vector<std::unique_ptr<Slots>> _allSlots;
-    std::vector<std::unique_ptr<ENTRY const>> _entries;
+    std::vector<Pointer> _entries;
 };
 
 } // namespace OpenSubdivHex::BfrExt::internal

@@ -6,12 +6,13 @@
 
 namespace OpenSubdivHex::BfrExt::internal {
 
-void GrowingPatch::Start(int size) {
+void GrowingPatch::Start(int size, bool keepsFaces) {
     for (int vert = 0; vert < size; ++vert) {
         _verts[vert] = {(vert + size - 1) % size, (vert + 1) % size, 1, 1, vert, kNone};
         _inner[vert] = vert;
     }
     _size = _numInner = _numMade = size;
+    _keepsFaces = keepsFaces;
     _faces[0] = std::uint8_t(_size);
     std::iota(_faces + 1, _faces + 1 + _size, std::uint8_t(0));
     _numFaceBytes = 1 + _size;
@@ -50,7 +51,9 @@ bool GrowingPatch::Add(int inner, int numFaces, std::uint8_t const *sizes) {
             }
             last = _numMade - 1;
         }
-        keepFace(vert, first, firstMade, isLast ? behind : kNone);
+        if (_keepsFaces) {
+            keepFace(vert, first, firstMade, isLast ? behind : kNone);
+        }
         if (!isLast && hasInnerNeighbors && !addInner(last, _verts[last].numFaces)) {
             return false;
         }
@@ -124,24 +127,22 @@ void GrowingPatch::keepFace(int vert, int last, int firstMade, int behind) {
     _numFaceBytes = int(to - _faces);
 }
 
-std::vector<GrowingPatch::Run> GrowingPatch::GetRuns() const {
-    std::vector<Run> runs;
-    runs.reserve(std::size_t(_numMade - _numInner));
+GrowingPatch::Run *GrowingPatch::GetRuns(Run *runs) const {
+    Run *end = runs;
     for (int vert = _size; vert < _numMade; ++vert) {
         if (!isPoint(vert)) {
             continue;
         }
         Point const &point = _points[vert];
-        if (!runs.empty() && point.vert == runs.back().first.vert &&
-            point.place == runs.back().first.place &&
-            point.corner == runs.back().first.corner + runs.back().numPoints) {
-            ++runs.back().numPoints;
+        Run *const last = end - 1;
+        if (end != runs && point.vert == last->first.vert && point.place == last->first.place &&
+            point.corner == last->first.corner + last->numPoints) {
+            ++last->numPoints;
         } else {
-            runs.push_back({point, 1});
+            *end++ = {point, 1};
         }
     }
-    runs.shrink_to_fit();
-    return runs;
+    return end;
 }
 
 void GrowingPatch::GetFaces(std::vector<int> &sizes, std::vector<int> &verts) const {

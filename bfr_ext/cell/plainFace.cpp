@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <functional>
+#include <new>
 #include <numeric>
 #include <utility>
 
@@ -57,10 +58,10 @@ bool grow(PlainFaceKey const &key, int numVerts, GrowingPatch &patch) {
 } // namespace
 
 PlainFaceType::PlainFaceType(PlainFaceTypes &types, PlainFaceKey const &key, int numVerts,
-                             GrowingPatch const &patch)
-    : hash(std::hash<PlainFaceKey>()(key)), _types(types), _key(key), _numVerts(numVerts),
-      _runs(patch.GetRuns()),
-      _numPoints(std::accumulate(_runs.begin(), _runs.end(), numVerts,
+                             Run const *runs, Run const *end)
+    : hash(std::hash<PlainFaceKey>()(key)), _types(types), _key(key, &types._memory),
+      _numVerts(numVerts), _runs(runs, end, &types._memory),
+      _numPoints(std::accumulate(runs, end, numVerts,
                                  [](int count, Run const &run) { return count + run.numPoints; })),
       _isInLattice(isInLattice(key, numVerts)) {}
 
@@ -91,8 +92,9 @@ CellType const &PlainFaceType::make() const {
 
 CellPatch PlainFaceType::makeCell() const {
     static thread_local GrowingPatch patch;
-    patch.Start(std::uint8_t(_key[0]) & ~kHasSizes);
-    grow(_key, _numVerts, patch);
+    PlainFaceKey const key(_key);
+    patch.Start(std::uint8_t(key[0]) & ~kHasSizes, true);
+    grow(key, _numVerts, patch);
     std::vector<int> faceSizes;
     std::vector<Far::Index> faceVerts;
     patch.GetFaces(faceSizes, faceVerts);
@@ -192,9 +194,16 @@ CellType::BorderItem const &PlainFaceType::GetLatticeItem(int const *turns,
 
 PlainFaceType const &PlainFaceTypes::Add(PlainFaceKey const &key, int numVerts,
                                          GrowingPatch const &patch) {
-    auto const [type, isNew] =
-        _entries.Add(std::make_unique<PlainFaceType const>(*this, key, numVerts, patch),
-                     [&](PlainFaceType const &other) { return other.HasKey(key); });
+    PlainFaceType::Run runs[GrowingPatch::kMaxVerts];
+    PlainFaceType::Run const *const end = patch.GetRuns(runs);
+    decltype(_entries)::Pointer made;
+    {
+        std::lock_guard<std::mutex> const lock(_mutex);
+        void *const memory = _memory.allocate(sizeof(PlainFaceType), alignof(PlainFaceType));
+        made.reset(new (memory) PlainFaceType(*this, key, numVerts, runs, end));
+    }
+    auto const [type, isNew] = _entries.Add(
+        std::move(made), [&](PlainFaceType const &other) { return other.HasKey(key); });
     if (isNew) {
         ++_numUnmade;
         _types.GetMemory().Add(decltype(_entries)::kEntrySize + type->GetHeapSize());
@@ -334,7 +343,7 @@ PlainFaceType const *PlainFaceGatherer::findType(PlainFaceTypes &types, FaceWalk
     if (PlainFaceType const *const type = types.Find(_key)) {
         return type;
     }
-    _patch.Start(_faceSize);
+    _patch.Start(_faceSize, false);
     return grow(_key, _numVerts, _patch) ? &types.Add(_key, _numVerts, _patch) : nullptr;
 }
 
