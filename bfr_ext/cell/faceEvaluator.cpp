@@ -106,7 +106,7 @@ void FaceEvaluator<REAL>::evaluateBorder(TessellationData const &tessellation,
                                          BorderEvaluator<REAL> &evaluator, REAL *p,
                                          PointDescriptor const &resultDesc) const {
     std::size_t const size = evaluator.GetSize();
-    int evaluatedEdge = -1; // of which there are
+    int evaluatedEdge = -1; // the edge whose points are there; -1: none
     std::vector<REAL> edgePoints;
     auto const getResult = [&](int place) { return p + std::ptrdiff_t(place) * resultDesc.stride; };
     for (TessellationData::BorderRun const &run : tessellation.border) {

@@ -789,7 +789,7 @@ void FacePatches<REAL>::Evaluate(Bfr::Parameterization const &parameterization, 
              (sizeof(_numInFirst) + sizeof(_numParts) + sizeof(_parts)) / sizeof(int));
     BfrPlace const ofFace = FindBfrPlace(parameterization, shape, uv, 0);
     PatchPlace place;
-    constexpr int kUsualGroups = 3;
+    constexpr int kUsualGroups = 3; // of the columns of a patch
     findPatchPlace(ofFace, shape, level, numDerivatives, place, [&] {
         auto const [part, block] = findBlock(level, place.patch);
         constexpr int kGroup = PatchBlock<REAL>::kGroup;

@@ -25,7 +25,7 @@ int getFaceSize(Level const &level, Far::Index place) {
     return level.GetFaceSize(level.vertFaces[place]);
 }
 
-// Keys are no longer.
+// The most bytes that a key has.
 constexpr std::size_t kMaxKeySize = 192;
 
 std::uint8_t const *getBytes(PlainFaceKey const &key) {
@@ -221,7 +221,7 @@ bool PlainFaceGatherer::findVertices(Level const &level, Index face) {
     // The faces of a vertex begin with the one at a place.
     auto const addVertex = [&](Index vert, Index place) {
         FaceWalk::Fan const fan = fans[vert];
-        if (fan.first == fan.end || end == _verts + kMaxVerts) {
+        if (fan.first == fan.end || end == _verts + GrowingPatch::kMaxInner) {
             return false;
         }
         *end++ = {vert, place < fan.end ? place : fan.first, fan};

@@ -155,13 +155,12 @@ private:
     bool writePoints(PlainFaceType const &type, Index *points);
     void writeTurns(FarExt::internal::Level const &level, Index face, Index *turns) const;
 
-    static constexpr int kMaxVerts = GrowingPatch::kMaxInner; // all of whose faces are in the patch
     static constexpr std::size_t kNumStamps = 4096;
 
     FaceWalk::Arrays const *_arrays = nullptr; // of the level
     int _faceSize = 0;
     int _numVerts = 0;
-    Vertex _verts[kMaxVerts] = {};
+    Vertex _verts[GrowingPatch::kMaxInner] = {};
     PlainFaceKey _key;
     GrowingPatch _patch;
     // By the last digits of points: the number of the search in which there was one.

@@ -36,7 +36,7 @@ public:
     }
     /// \brief Writes derivatives at a corner, which span the tangent plane as those by u and v do.
     ///
-    /// Cells whose types few are of have them from their children, so that few limit masks are needed.
+    /// Cells of rare types take them from their children, so that few limit masks are needed.
     void EvaluateCorner(std::size_t cell, int corner, double *du, double *dv) {
         findCorner(cell, corner).EvaluateCorner(corner, du, dv);
     }
