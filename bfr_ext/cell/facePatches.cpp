@@ -137,27 +137,29 @@ PatchRows<REAL> const &getRows(CellType const &type, int steps, CornerAges const
         [&] { return PatchRows<REAL>(findRows(type, steps, ages, numLevels)); });
 }
 
-// The first level whose cells are of few types, outside of lattices: irregular meshes have about as many
-// types of base faces and of their children as there are of these.
-constexpr int kCommonLevel = 2;
-
 } // namespace
 
 template <typename REAL>
 class ChildPatches {
 public:
-    // order: the rows of the step in the order in which they come; null: in their own.
-    ChildPatches(CellType const &child, int level, std::vector<int> const *order)
-        : _numbers(child.GetStep().GetNumRows(), -1) {
+    // order: by place, which of the points of the child, or of the rows of its step, patches are sums of; null: all in turn.
+    ChildPatches(CellType const &child, StencilOf of, int level, std::vector<int> const *order)
+        : _numbers(of == StencilOf::Step ? child.GetStep().GetNumRows()
+                                         : std::size_t(child.GetNumPoints()),
+                   -1) {
         CornerAges const ages = child.IsWhole() ? CornerAges(std::size_t(child.GetNumCorners()), 0)
                                                 : CornerAges{-1, -1, 0, 0};
-        std::vector<CellType::Child> const &children = child.GetChildren();
-        forEachChild(child.GetShape(), int(children.size()), ages,
-                     [&](int i, CornerAges const &ofChild) {
-                         CellType::Child const &next = children[std::size_t(i)];
-                         add(getRows<REAL>(*next.type, kCommonLevel, ofChild, level - kCommonLevel),
-                             next.step);
-                     });
+        if (of == StencilOf::Step) {
+            std::vector<CellType::Child> const &children = child.GetChildren();
+            forEachChild(child.GetShape(), int(children.size()), ages,
+                         [&](int i, CornerAges const &ofChild) {
+                             CellType::Child const &next = children[std::size_t(i)];
+                             add(getRows<REAL>(*next.type, 2, ofChild, level - 2),
+                                 [&](std::size_t point) { return next.step.GetMatrixRow(point); });
+                         });
+        } else {
+            add(getRows<REAL>(child, 1, ages, level - 1), [](std::size_t point) { return point; });
+        }
         _columns.shrink_to_fit();
         int const *columns = _columns.data();
         for (PatchBlock<REAL> &block : _blocks) {
@@ -181,30 +183,21 @@ public:
     std::size_t GetHeapSize() const { return GetHeapSizes(_blocks, _sources, _columns); }
     // By patch.
     std::vector<PatchBlock<REAL>> const &GetBlocks() const { return _blocks; }
-    // The points, as rows of the step.
+    // The points, as places of the order.
     std::vector<int> const &GetSources() const { return _sources; }
 
 private:
-    void add(PatchRows<REAL> const &ofCell, ChildStep const &step) {
-        // The rows that points of the cell are.
-        std::vector<double> numbers(step.GetNumRows());
-        std::iota(numbers.begin(), numbers.end(), 1.0);
-        std::vector<double> byRow;
-        step.Spread(numbers, byRow);
-        std::vector<int> rows(numbers.size());
-        for (std::size_t row = 0; row < byRow.size(); ++row) {
-            if (byRow[row] > 0) {
-                rows[std::size_t(byRow[row]) - 1] = int(row);
-            }
-        }
+    // getNumber: of a point of the cell, among all.
+    template <typename GET>
+    void add(PatchRows<REAL> const &ofCell, GET const &getNumber) {
         for (PatchBlock<REAL> const &block : ofCell.GetBlocks()) {
             _blocks.push_back(block);
             for (int i = 0; i < block.numColumns; ++i) {
-                int const row = rows[std::size_t(block.columns[i])];
-                int &number = _numbers[std::size_t(row)];
+                std::size_t const point = getNumber(std::size_t(block.columns[i]));
+                int &number = _numbers[point];
                 if (number < 0) {
                     number = int(_sources.size());
-                    _sources.push_back(row);
+                    _sources.push_back(int(point));
                 }
                 _columns.push_back(number);
             }
@@ -214,24 +207,28 @@ private:
     std::vector<PatchBlock<REAL>> _blocks;
     std::vector<int> _columns; // of all blocks, among the sources
     std::vector<int> _sources;
-    std::vector<int> _numbers; // by row, among the sources; while these are made
+    std::vector<int> _numbers; // by point, among the sources; while these are made
 };
 
 namespace {
 
-// Those of a child, kept with it: of a CellType or a RingCell.
+// Those of a child, kept with it.
 template <typename REAL, typename CHILD>
-ChildPatches<REAL> const &getPatches(CHILD const &child, CellType const &type, int level,
-                                     std::vector<int> const *order) {
+ChildPatches<REAL> const &getPatches(CHILD const &child, CellType const &type, StencilOf of,
+                                     int level, std::vector<int> const *order) {
     return child.GetPatterns().template Get<ChildPatches<REAL>>(
         PatternTable::GetKind<REAL>(PatternOf::ChildPatches), &level, &level + 1,
-        [&] { return ChildPatches<REAL>(type, level, order); });
+        [&] { return ChildPatches<REAL>(type, of, level, order); });
+}
+
+template <typename REAL>
+ChildPatches<REAL> const &getPatches(CellType const &child, int level) {
+    return getPatches<REAL>(child, child, StencilOf::Step, level, nullptr);
 }
 
 template <typename REAL>
 ChildPatches<REAL> const &getPatches(RingCell const &child, int level) {
-    return getPatches<REAL>(child, child.GetType(), level,
-                            child.IsInner() ? &child.GetColumns() : nullptr);
+    return getPatches<REAL>(child, child.GetType(), child.GetSources(), level, &child.GetColumns());
 }
 
 // Makes the points that patches of base faces outside of lattices are sums of; scratch memory is kept for the next face.
@@ -255,22 +252,9 @@ public:
             RingCell const &child = face.GetChild(i);
             std::vector<int> const &sources = getPatches<REAL>(child, level).GetSources();
             _rings.FindChildIndices(face, i, _indices);
-            if (child.IsInner()) {
-                // What the step makes is there.
-                for (int const source : sources) {
-                    write(ofRings + std::size_t(_indices[std::size_t(source)]) * _paddedSize);
-                }
-                continue;
+            for (int const source : sources) {
+                write(ofRings + std::size_t(_indices[std::size_t(source)]) * _paddedSize);
             }
-            grow(_ofChild, _indices.size());
-            REAL *const ofChild = _ofChild.data();
-            std::size_t const paddedSize = _paddedSize;
-            int const *column = child.GetColumns().data();
-            for (int const index : _indices) {
-                StepMatrix::CopyPadded(ofRings + std::size_t(index) * paddedSize, paddedSize,
-                                       ofChild + std::size_t(*column++) * paddedSize);
-            }
-            writeRefined(child.GetType(), sources);
         }
     }
 
@@ -287,8 +271,7 @@ public:
         for (CellType::Child const &child : type.GetChildren()) {
             grow(_ofChild, child.step.GetNumRows());
             child.step.CopyPoints(_ofFace.data(), _paddedSize, _ofChild.data());
-            writeRefined(*child.type,
-                         getPatches<REAL>(*child.type, *child.type, level, nullptr).GetSources());
+            writeRefined(*child.type, getPatches<REAL>(*child.type, level).GetSources());
         }
     }
 
@@ -727,8 +710,7 @@ FacePatches<REAL>::FacePatches(BaseType const &type, int level) {
         add(_ofLattice.GetBlocks(), 0, type->GetNumPoints());
     } else {
         for (CellType::Child const &child : type->GetChildren()) {
-            addChild(getPatches<REAL>(*child.type, *child.type, level, nullptr),
-                     type->GetNumPoints());
+            addChild(getPatches<REAL>(*child.type, level), type->GetNumPoints());
         }
     }
 }

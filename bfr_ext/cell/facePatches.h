@@ -49,8 +49,8 @@ class ChildPatches;
 
 /// \brief The Gregory patches of a level in a base face, and the points that they are sums of.
 ///
-/// In lattices few types serve all faces: patches are sums of the control points.  Other base faces have types of their own,
-/// and few types of cells behind two steps: there, patches are sums of points of that level.
+/// Patches are sums of the points of the first level whose cells have few types: in lattices of the control points; else, of
+/// rings in what these give, and of two steps where there are no rings.
 template <typename REAL>
 class FacePatches {
 public:

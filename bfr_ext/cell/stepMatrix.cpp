@@ -123,16 +123,18 @@ ChildStep::ChildStep(StepMatrix const &matrix, std::vector<int> const &rows) : _
 void ChildStep::Spread(std::vector<double> const &left, std::vector<double> &result) const {
     result.assign(_matrix->GetNumRows(), 0.0);
     for (std::size_t row = 0; row < left.size(); ++row) {
-        result[getMatrixRow(row)] += left[row];
+        result[GetMatrixRow(row)] += left[row];
     }
 }
 
 void ChildStep::ApplyLeft(std::vector<double> const &left, std::vector<double> &result) const {
     result.assign(_matrix->GetNumParentPoints(), 0.0);
     for (std::size_t row = 0; row < left.size(); ++row) {
-        ForEachEntry(row, [&, factor = left[row]](std::size_t point, double weight) {
-            result[point] += factor * weight;
-        });
+        double const factor = left[row];
+        if (factor != 0) {
+            ForEachEntry(
+                row, [&](std::size_t point, double weight) { result[point] += factor * weight; });
+        }
     }
 }
 

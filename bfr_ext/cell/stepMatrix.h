@@ -152,20 +152,24 @@ public:
 
     std::size_t GetNumRows() const { return _bytes.size() + _longs.size(); }
     std::size_t GetHeapSize() const { return GetHeapSizes(_bytes, _longs); }
+    /// Which row of the matrix a point of the child is.
+    std::size_t GetMatrixRow(std::size_t row) const {
+        return _longs.empty() ? _bytes[row] : _longs[row];
+    }
     /// Copies the points of the child from those that the matrix made.
     template <typename REAL>
     void CopyPoints(REAL const *points, std::size_t paddedSize, REAL *result) const {
         std::size_t const numRows = GetNumRows();
         for (std::size_t i = 0; i < numRows; ++i) {
             result =
-                StepMatrix::CopyPadded(points + getMatrixRow(i) * paddedSize, paddedSize, result);
+                StepMatrix::CopyPadded(points + GetMatrixRow(i) * paddedSize, paddedSize, result);
         }
     }
 
     /// As StepMatrix::ForEachEntry(), of a point of the child.
     template <typename FUNCTION>
     void ForEachEntry(std::size_t row, FUNCTION const &function) const {
-        _matrix->ForEachEntry(getMatrixRow(row), function);
+        _matrix->ForEachEntry(GetMatrixRow(row), function);
     }
 
     /// result = left A: what the points of the child weigh, in terms of the parent's.
@@ -174,10 +178,6 @@ public:
     void Spread(std::vector<double> const &left, std::vector<double> &result) const;
 
 private:
-    std::size_t getMatrixRow(std::size_t row) const {
-        return _longs.empty() ? _bytes[row] : _longs[row];
-    }
-
     StepMatrix const *_matrix;
     // One of these, as large as numbers are.
     std::vector<std::uint8_t> _bytes;
