@@ -137,7 +137,7 @@ public:
     /// around its vertex, because each fan is refined apart.
     /// \return  GetNumControlPoints()
     int GetControlPointIndices(Index meshPointIndices[]) const;
-    /// Copies the control points from those of the mesh.
+    /// Copies the control points from those of the mesh, of either precision.
     template <typename REAL_MESH>
     void GatherControlPoints(REAL_MESH const meshPoints[], PointDescriptor const &meshPointDesc,
                              REAL controlPoints[], PointDescriptor const &controlPointDesc) const {
@@ -182,8 +182,9 @@ public:
 
     /// Control points, and those of the second level where the face needs them.
     int GetNumPatchPoints() const;
-    /// Copies the control points from those of the mesh, and computes the others.
-    void PreparePatchPoints(REAL const meshPoints[], PointDescriptor const &meshPointDesc,
+    /// Copies the control points from those of the mesh, of either precision, and computes the others.
+    template <typename REAL_MESH>
+    void PreparePatchPoints(REAL_MESH const meshPoints[], PointDescriptor const &meshPointDesc,
                             REAL patchPoints[], PointDescriptor const &patchPointDesc) const {
         GatherControlPoints(meshPoints, meshPointDesc, patchPoints, patchPointDesc);
         ComputePatchPoints(patchPoints, patchPointDesc);

@@ -492,6 +492,11 @@ TEST(SurfacePlaces, OfAnySizeAndStride) {
     auto const numPoints = std::size_t(surface.GetNumPatchPoints());
     std::vector<float> all(11 * numPoints);
     surface.PreparePatchPoints(data.data(), 11, all.data(), 11);
+    // Points of the mesh may be of the other precision.
+    std::vector<float> ofDoubles(all.size());
+    surface.PreparePatchPoints(std::vector<double>(data.begin(), data.end()).data(), 11,
+                               ofDoubles.data(), 11);
+    EXPECT_EQ(ofDoubles, all);
     float expected[6][11];
     surface.Evaluate(uv, all.data(), 11, expected[0], expected[1], expected[2], expected[3],
                      expected[4], expected[5]);
