@@ -694,7 +694,8 @@ PatchRows<REAL>::PatchRows(std::vector<std::vector<double>> rows) {
 template <typename REAL>
 FacePatches<REAL> const &FacePatches<REAL>::Get(BaseType const &type, int level) {
     PlainFaceType const *const plain = type.GetPlain();
-    PatternTable &patterns = plain ? plain->GetRings().GetPatterns() : type->GetPatterns();
+    PatternTable &patterns =
+        plain ? plain->GetRings().GetPatternsOfChildren() : type->GetPatterns();
     return patterns.Get<FacePatches>(PatternTable::GetKind<REAL>(PatternOf::FacePatches), &level,
                                      &level + 1, [&] { return FacePatches(type, level); });
 }
@@ -704,7 +705,7 @@ FacePatches<REAL>::FacePatches(BaseType const &type, int level) {
     if (PlainFaceType const *const plain = type.GetPlain()) {
         FaceRings const &face = plain->GetRings();
         for (std::size_t i = 0; i <= face.GetRings().GetRings().size(); ++i) {
-            addChild(getPatches<REAL>(face.GetChild(i), level), plain->GetNumPoints());
+            addChild(getPatches<REAL>(face.GetChild(i), level));
         }
     } else if (type.IsInLattice()) {
         CornerAges const ages(std::size_t(type->GetNumCorners()), -1);
@@ -712,7 +713,7 @@ FacePatches<REAL>::FacePatches(BaseType const &type, int level) {
         add(_ofLattice.GetBlocks(), 0, type->GetNumPoints());
     } else {
         for (CellType::Child const &child : type->GetChildren()) {
-            addChild(getPatches<REAL>(*child.type, level), type->GetNumPoints());
+            addChild(getPatches<REAL>(*child.type, level));
         }
     }
 }
@@ -721,7 +722,7 @@ template <typename REAL>
 void FacePatches<REAL>::add(std::vector<PatchBlock<REAL>> const &blocks, int firstPoint,
                             int numPoints) {
     Part const part = {blocks.data(), firstPoint, numPoints};
-    auto const number = std::size_t(_numParts++);
+    std::size_t const number = _children.size();
     if (number == 0) {
         _numInFirst = int(blocks.size());
     }
@@ -733,11 +734,11 @@ void FacePatches<REAL>::add(std::vector<PatchBlock<REAL>> const &blocks, int fir
 }
 
 template <typename REAL>
-void FacePatches<REAL>::addChild(ChildPatches<REAL> const &child, int numControlPoints) {
-    _children.push_back(&child);
+void FacePatches<REAL>::addChild(ChildPatches<REAL> const &child) {
     int const numPoints = int(child.GetSources().size());
-    add(child.GetBlocks(), numControlPoints + _numPoints, numPoints);
+    add(child.GetBlocks(), _numPoints, numPoints);
     _numPoints += numPoints;
+    _children.push_back(&child);
 }
 
 template <typename REAL>
@@ -770,8 +771,8 @@ template <typename REAL>
 void FacePatches<REAL>::Evaluate(Bfr::Parameterization const &parameterization, FaceShape shape,
                                  int level, Pair const &uv, int numDerivatives, REAL const *points,
                                  int size, std::ptrdiff_t stride, REAL *const *results) const {
-    prefetch(&_numInFirst,
-             (sizeof(_numInFirst) + sizeof(_numParts) + sizeof(_parts)) / sizeof(int));
+    prefetch(&_numPoints,
+             (sizeof(_numPoints) + sizeof(_numInFirst) + sizeof(_parts)) / sizeof(int));
     BfrPlace const ofFace = FindBfrPlace(parameterization, shape, uv, 0);
     PatchPlace place;
     constexpr int kUsualGroups = 3; // of the columns of a patch

@@ -58,7 +58,7 @@ public:
     static FacePatches const &Get(BaseType const &type, int level);
 
     std::size_t GetHeapSize() const { return GetHeapSizes(_ofLattice, _otherParts, _children); }
-    /// Points that the patches need besides the control points.
+    /// Points that the patches are sums of; 0: of the control points.
     int GetNumPoints() const { return _numPoints; }
     /// \brief Makes these, outside of lattices, from the control points, of \p size numbers each, from one to the next by
     /// \p stride.
@@ -70,7 +70,7 @@ public:
     /// 0, 1 or 2.
     ///
     /// \param level    that of the patches
-    /// \param points   the control points, and those of MakePoints() behind them
+    /// \param points   those of MakePoints() or, in lattices, the control points
     /// \param results  the point; by u, by v; by u twice, by u and v, by v twice
     void Evaluate(Bfr::Parameterization const &parameterization, FaceShape shape, int level,
                   Pair const &uv, int numDerivatives, REAL const *points, int size,
@@ -87,16 +87,15 @@ private:
     FacePatches(BaseType const &type, int level);
 
     void add(std::vector<PatchBlock<REAL>> const &blocks, int firstPoint, int numPoints);
-    void addChild(ChildPatches<REAL> const &child, int numControlPoints);
+    void addChild(ChildPatches<REAL> const &child);
     // The part that has a patch, and the patch there.
     std::pair<Part const *, PatchBlock<REAL> const *> findBlock(int level, int patch) const;
 
     // What evaluation reads comes first, and lies together: types of faces are mostly not in the cache.
-    int _numInFirst = 0; // patches of the first part
-    int _numParts = 0;
+    int _numPoints = 0;
+    int _numInFirst = 0;        // patches of the first part
     std::array<Part, 5> _parts; // of a face of up to four sides all
     std::vector<Part> _otherParts;
-    int _numPoints = 0;
     std::vector<ChildPatches<REAL> const *> _children; // outside of lattices
     PatchRows<REAL> _ofLattice;
 };
