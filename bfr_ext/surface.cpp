@@ -94,7 +94,7 @@ void Surface<REAL>::ComputePatchPoints(REAL patchPoints[],
                                        PointDescriptor const &patchPointDesc) const {
     if (IsValid() && !GetFace().type.IsInLattice()) {
         findPatches().MakePoints(
-            GetFace().type, _patchLevel, patchPoints, patchPointDesc.size, patchPointDesc.stride,
+            GetFace().type, patchPoints, patchPointDesc.size, patchPointDesc.stride,
             patchPoints + std::ptrdiff_t(_numControlPoints) * patchPointDesc.stride);
     }
 }

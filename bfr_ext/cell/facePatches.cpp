@@ -243,22 +243,23 @@ public:
         _points = points;
     }
 
-    void MakeOfRings(PlainFaceType const &type, int level, REAL const *control) {
+    // children: those of the face, here and below
+    void MakeOfRings(PlainFaceType const &type,
+                     std::vector<ChildPatches<REAL> const *> const &children, REAL const *control) {
         FaceRings const &face = type.GetRings();
         _rings.Set(face.GetRings(), nullptr,
                    {control, _stride, _size, std::size_t(type.GetNumPoints()), nullptr});
         REAL const *const ofRings = _rings.GetPoints();
-        for (std::size_t i = 0; i <= face.GetRings().GetRings().size(); ++i) {
-            RingCell const &child = face.GetChild(i);
-            std::vector<int> const &sources = getPatches<REAL>(child, level).GetSources();
+        for (std::size_t i = 0; i < children.size(); ++i) {
             _rings.FindChildIndices(face, i, _indices);
-            for (int const source : sources) {
+            for (int const source : children[i]->GetSources()) {
                 write(ofRings + std::size_t(_indices[std::size_t(source)]) * _paddedSize);
             }
         }
     }
 
-    void MakeOfSteps(CellType const &type, int level, REAL const *control) {
+    void MakeOfSteps(CellType const &type, std::vector<ChildPatches<REAL> const *> const &children,
+                     REAL const *control) {
         auto const numPoints = std::size_t(type.GetNumPoints());
         grow(_ofChild, numPoints);
         for (std::size_t i = 0; i < numPoints; ++i) {
@@ -268,10 +269,11 @@ public:
         StepMatrix const &step = type.GetStep();
         grow(_ofFace, step.GetNumRows());
         step.Apply(_ofChild.data(), _paddedSize, _ofFace.data());
-        for (CellType::Child const &child : type.GetChildren()) {
+        for (std::size_t i = 0; i < children.size(); ++i) {
+            CellType::Child const &child = type.GetChildren()[i];
             grow(_ofChild, child.step.GetNumRows());
             child.step.CopyPoints(_ofFace.data(), _paddedSize, _ofChild.data());
-            writeRefined(*child.type, getPatches<REAL>(*child.type, level).GetSources());
+            writeRefined(*child.type, children[i]->GetSources());
         }
     }
 
@@ -732,20 +734,21 @@ void FacePatches<REAL>::add(std::vector<PatchBlock<REAL>> const &blocks, int fir
 
 template <typename REAL>
 void FacePatches<REAL>::addChild(ChildPatches<REAL> const &child, int numControlPoints) {
+    _children.push_back(&child);
     int const numPoints = int(child.GetSources().size());
     add(child.GetBlocks(), numControlPoints + _numPoints, numPoints);
     _numPoints += numPoints;
 }
 
 template <typename REAL>
-void FacePatches<REAL>::MakePoints(BaseType const &type, int level, REAL const *control, int size,
+void FacePatches<REAL>::MakePoints(BaseType const &type, REAL const *control, int size,
                                    std::ptrdiff_t stride, REAL *points) const {
     static thread_local PointMaker<REAL> maker;
     maker.Init(size, stride, points);
     if (PlainFaceType const *const plain = type.GetPlain()) {
-        maker.MakeOfRings(*plain, level, control);
+        maker.MakeOfRings(*plain, _children, control);
     } else {
-        maker.MakeOfSteps(*type, level, control);
+        maker.MakeOfSteps(*type, _children, control);
     }
 }
 

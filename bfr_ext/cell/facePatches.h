@@ -57,18 +57,19 @@ public:
     /// Those of a type, made on demand.
     static FacePatches const &Get(BaseType const &type, int level);
 
-    std::size_t GetHeapSize() const { return GetHeapSizes(_ofLattice, _otherParts); }
+    std::size_t GetHeapSize() const { return GetHeapSizes(_ofLattice, _otherParts, _children); }
     /// Points that the patches need besides the control points.
     int GetNumPoints() const { return _numPoints; }
     /// \brief Makes these, outside of lattices, from the control points, of \p size numbers each, from one to the next by
     /// \p stride.
     ///
-    /// \param level  that of the patches, here and below
-    void MakePoints(BaseType const &type, int level, REAL const *control, int size,
-                    std::ptrdiff_t stride, REAL *points) const;
+    /// \param type  that of the constructor
+    void MakePoints(BaseType const &type, REAL const *control, int size, std::ptrdiff_t stride,
+                    REAL *points) const;
     /// Evaluates the patch of a place: the point, and derivatives by u and v as far as \p numDerivatives asks:
     /// 0, 1 or 2.
     ///
+    /// \param level    that of the patches
     /// \param points   the control points, and those of MakePoints() behind them
     /// \param results  the point; by u, by v; by u twice, by u and v, by v twice
     void Evaluate(Bfr::Parameterization const &parameterization, FaceShape shape, int level,
@@ -96,6 +97,7 @@ private:
     std::array<Part, 5> _parts; // of a face of up to four sides all
     std::vector<Part> _otherParts;
     int _numPoints = 0;
+    std::vector<ChildPatches<REAL> const *> _children; // outside of lattices
     PatchRows<REAL> _ofLattice;
 };
 
