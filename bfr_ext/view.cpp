@@ -129,11 +129,7 @@ public:
     FaceShape GetShape() const { return GetType().GetShape(_face->size); }
     void SetCells(RefinedCells &cells) const { cells.SetBase(GetType(), _points.data(), 3); }
     void Sample(CellGrid &grid, std::vector<double> &samples) const {
-        if (_sources.points && GetType().GetPlain()) {
-            grid.Sample(*_face, _sources, samples);
-        } else {
-            grid.Sample(GetType(), _points.data(), samples);
-        }
+        grid.Sample(*_face, _points.data(), _sources, samples);
     }
     /// Whether the hull of its points is outside of the picture, which contains the surface.
     bool IsOutside(ViewGeometry const &geometry) const {
