@@ -251,8 +251,8 @@ void Surface<REAL>::ApplyStencil(REAL const stencil[], REAL const controlPoints[
     if (!IsValid()) {
         return;
     }
-    internal::SumUp(stencil, GetNumControlPoints(), controlPoints, nullptr, controlPointDesc,
-                    result);
+    internal::SumUp(stencil, std::size_t(_numControlPoints), controlPoints, nullptr,
+                    std::size_t(controlPointDesc.size), controlPointDesc.stride, result);
 }
 
 template <typename REAL>
@@ -262,8 +262,8 @@ void Surface<REAL>::ApplyStencilFromMesh(REAL const stencil[], REAL const meshPo
     if (!IsValid()) {
         return;
     }
-    internal::SumUp(stencil, GetNumControlPoints(), meshPoints, GetFace().GetPoints(),
-                    meshPointDesc, result);
+    internal::SumUp(stencil, std::size_t(_numControlPoints), meshPoints, GetFace().GetPoints(),
+                    std::size_t(meshPointDesc.size), meshPointDesc.stride, result);
 }
 
 template class Surface<float>;
