@@ -65,7 +65,8 @@ private:
 ///    level 3, or of SurfaceFactory::Options::SetApproxLevelSmooth().  Patches have the limit points and tangent planes at
 ///    the corners of cells.  Neighbours, in other faces, too, have equal points and tangent planes along their common edge,
 ///    except for rounding.  With FaceMask::Smooth at level 3, points lie 2e-6 of a model's size from the surface (rms), and
-///    normals deviate by 0.1 to 0.2 degrees; each further level divides these by 8 and 3.  Near extraordinary base
+///    normals deviate by 0.1 to 0.2 degrees; each further level divides these by 8 and 3.  Derivatives are OpenSubdiv's of a
+///    Gregory patch: as if its points inside of corners, which (u, v) blends, were fixed.  Near extraordinary base
 ///    vertices, where cells do not shrink by 1/2, points are shifted along the surface by up to a hundredth of a face.
 ///  - **Tessellations and stencils** are exact at vertices of any level (FarExt::TopologyLevel::GetFaceSurfaceCoords()), as
 ///    limit stencil tables are.  Elsewhere the cells around (u, v) are refined until the surface between the corners of a

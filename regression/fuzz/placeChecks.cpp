@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 
 namespace OpenSubdivHex::Regression {
@@ -42,10 +43,9 @@ class PlacesChecker {
 public:
     PlacesChecker(MeshSurfaces<REAL> const &mesh, Dice &dice)
         : _mesh(mesh), _faces(mesh.factory->GetFaces()), _dice(dice), _smooth(2 + dice.Roll(4)),
-          _sharp(dice.IsOneOf(2) ? _smooth : 2 + dice.Roll(4)), _size(mesh.pointSize) {
-        _factory = SurfaceFactory::Create(
-            mesh.factory->GetMesh(),
-            SurfaceFactory::Options().SetApproxLevelSmooth(_smooth).SetApproxLevelSharp(_sharp));
+          _sharp(dice.IsOneOf(2) ? _smooth : 2 + dice.Roll(4)), _size(mesh.pointSize),
+          _cache(dice.IsOneOf(2) ? 4096 : std::size_t(1) << 30) {
+        _factory = createFactory(_cache);
         _surfaces.resize(std::size_t(_faces.GetNumFaces()));
         _points.resize(_surfaces.size());
         for (int face = 0; face < _faces.GetNumFaces(); ++face) {
@@ -62,6 +62,7 @@ public:
                 checkCorners(face);
                 for (int i = 0; i < 8; ++i) {
                     checkPlace(face);
+                    checkOutside(face);
                 }
             }
         }
@@ -72,6 +73,12 @@ public:
     }
 
 private:
+    std::unique_ptr<SurfaceFactory> createFactory(BfrExt::SurfaceFactoryCache &cache) const {
+        return SurfaceFactory::Create(_mesh.factory->GetMesh(), SurfaceFactory::Options()
+                                                                    .SetExternalCache(&cache)
+                                                                    .SetApproxLevelSmooth(_smooth)
+                                                                    .SetApproxLevelSharp(_sharp));
+    }
     bool isVertexData() const { return _mesh.values.mode == FarExt::INTERPOLATE_VERTEX; }
     double getScale() const { return std::max(1.0, GetSize(_mesh.values.levels[0])); }
 
@@ -215,6 +222,32 @@ private:
         }
     }
 
+    /// (u, v) outside of the face have a point of the surface, and what is no number has none.
+    void checkOutside(int face) {
+        REAL const choices[] = {std::numeric_limits<REAL>::quiet_NaN(),
+                                std::numeric_limits<REAL>::infinity(),
+                                std::numeric_limits<REAL>::max(),
+                                -std::numeric_limits<REAL>::max(),
+                                std::numeric_limits<REAL>::denorm_min(),
+                                -std::numeric_limits<REAL>::denorm_min(),
+                                REAL(1e9),
+                                REAL(-1),
+                                REAL(0),
+                                REAL(0.5),
+                                REAL(1),
+                                REAL(3)};
+        REAL const uv[2] = {choices[_dice.Roll(int(std::size(choices)))],
+                            choices[_dice.Roll(int(std::size(choices)))]};
+        ReferenceValues const values = evaluate(face, uv, kNumRows);
+        if (std::isnan(uv[0]) || std::isnan(uv[1])) {
+            if (!values.array().isNaN().all()) {
+                fail(face, uv, " have ", values);
+            }
+        } else if (std::isfinite(uv[0]) && std::isfinite(uv[1]) && !values.allFinite()) {
+            fail(face, uv, " have ", values);
+        }
+    }
+
     /// Derivatives against differences, where there is no line between patches.
     void checkDifferences(int face, REAL const uv[2], ReferenceValues const &values) {
         constexpr double kStep = 1e-5;
@@ -297,13 +330,15 @@ private:
         typename BfrExt::SurfacePlaces<REAL>::Options options;
         options.interpolationMode = _mesh.values.mode;
         options.fvarChannel = _mesh.values.channel;
-        auto const places = BfrExt::SurfacePlaces<REAL>::Create(*_factory, count, faces.data(),
-                                                                uvs.data(), options);
-        if (!places) {
-            Fail("no places");
-        }
         auto const numNumbers = std::size_t(count * _size);
         for (int const numThreads : {1, 8}) {
+            // Threads find weights at once.
+            BfrExt::SurfaceFactoryCache cache;
+            auto const places = BfrExt::SurfacePlaces<REAL>::Create(
+                *createFactory(cache), count, faces.data(), uvs.data(), options);
+            if (!places) {
+                Fail("no places");
+            }
             FarExt::SetNumThreads(numThreads);
             std::vector<REAL> p(numNumbers), du(numNumbers), dv(numNumbers);
             places->Evaluate(_mesh.points.data(), _size, p.data(), du.data(), dv.data(), _size);
@@ -328,7 +363,8 @@ private:
     Dice &_dice;
     int const _smooth; // levels of patches
     int const _sharp;
-    int const _size; // numbers of a point
+    int const _size;                    // numbers of a point
+    BfrExt::SurfaceFactoryCache _cache; // which holds all types, or hardly any
     std::unique_ptr<SurfaceFactory> _factory;
     std::vector<Surface<REAL>> _surfaces;
     std::vector<std::vector<REAL>> _points; // of patches, by face
