@@ -177,11 +177,12 @@ public:
 
     /// @name Patch points
     /// The points that Evaluate() at (u, v) takes, of which patches are weighted sums: the control points and, but for faces in
-    /// regular lattices of quads, triangles or hexagons, some 250 points of the second level behind them.  Types of faces share
-    /// the weights.  Make the points once for those of a mesh; they serve any number of evaluations of this surface.
+    /// regular lattices of quads, triangles or hexagons, 150 to 280 points of the first or second level behind them (of a face of
+    /// n vertices about n * n).  Types of faces share the weights.  Make the points once for those of a mesh; they serve any
+    /// number of evaluations of this surface.
     /// @{
 
-    /// Control points, and those of the second level where the face needs them.
+    /// Control points, and those of a later level where the face needs them.
     int GetNumPatchPoints() const;
     /// Copies the control points from those of the mesh, of either precision, and computes the others.
     template <typename REAL_MESH>
