@@ -98,9 +98,13 @@ template <typename REAL>
 void Surface<REAL>::evaluate(REAL const uv[2], int numDerivatives, REAL const patchPoints[],
                              PointDescriptor const &pointDesc, REAL *const results[6]) const {
     if (IsValid()) {
-        findPatches().Evaluate(_parameterization, GetFaceShape(), _patchLevel,
-                               {double(uv[0]), double(uv[1])}, numDerivatives, patchPoints,
-                               pointDesc.size, pointDesc.stride, results);
+        internal::FacePatches<REAL> const &patches = findPatches();
+        if (patches.GetNumPoints() > 0) {
+            patchPoints += std::ptrdiff_t(_numControlPoints) * pointDesc.stride;
+        }
+        patches.Evaluate(_parameterization, GetFaceShape(), _patchLevel,
+                         {double(uv[0]), double(uv[1])}, numDerivatives, patchPoints,
+                         pointDesc.size, pointDesc.stride, results);
     }
 }
 
