@@ -244,8 +244,8 @@ void CellStencil::addSecondAtCorners(Place const &place) {
     SecondDerivatives const &derivatives = SecondDerivatives::Find(*place.type);
     place.FindCornerWeights(_cornerWeights);
     for (std::size_t corner = 0; corner < _cornerWeights.size(); ++corner) {
-        SecondDerivatives::Rows const byUv =
-            SecondDerivatives::ChangeCoordinates(place.toCoords, derivatives.AtCorner(corner));
+        SecondDerivatives::Rows byUv = derivatives.AtCorner(corner);
+        SecondDerivatives::Turn(place.toCoords, byUv);
         for (std::size_t k = 0; k < byUv.size(); ++k) {
             add(_weights[3 + k], _cornerWeights[corner], byUv[k]);
         }
