@@ -97,9 +97,10 @@ CellPatch PlainFaceType::makeCell() const {
     grow(key, _numVerts, patch);
     std::vector<int> faceSizes;
     std::vector<Far::Index> faceVerts;
-    patch.GetFaces(faceSizes, faceVerts);
+    std::vector<Far::Index> otherCorners;
+    patch.GetFaces(faceSizes, faceVerts, otherCorners);
     return FarExt::internal::MakePlainBaseCell(std::move(faceSizes), std::move(faceVerts),
-                                               _numVerts, GetNumPoints());
+                                               std::move(otherCorners), GetNumPoints());
 }
 
 namespace {
