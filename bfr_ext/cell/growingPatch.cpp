@@ -122,29 +122,28 @@ bool GrowingPatch::join(int before, int behind) {
 void GrowingPatch::keepFace(int vert, int last, int firstMade, int behind) {
     std::uint8_t *const face = _faces + _numFaceBytes;
     std::uint8_t *to = face + 1;
-    *to++ = std::uint8_t(vert);
-    *to++ = std::uint8_t(last);
-    for (int made = firstMade; made < _numMade; ++made) {
-        *to++ = std::uint8_t(made);
-    }
-    if (behind != kNone) {
-        *to++ = std::uint8_t(behind);
-    }
-    int const size = int(to - face - 1);
-    face[0] = std::uint8_t(size);
-    _numFaceBytes = int(to - _faces);
     int const first = _numCorners;
-    _numCorners += size;
-    std::fill_n(_others + first, size, std::int16_t(kNone));
+    auto const add = [&](int ofFace) {
+        *to++ = std::uint8_t(ofFace);
+        _others[_numCorners++] = std::int16_t(kNone);
+    };
+    add(vert);
     joinEdges(first, _verts[last].corner);
+    // The other edges, and that to the vertex where another face follows, are on the boundary.
+    auto const addOnBoundary = [&](int ofFace) {
+        _verts[ofFace].corner = _numCorners;
+        add(ofFace);
+    };
+    addOnBoundary(last);
+    for (int made = firstMade; made < _numMade; ++made) {
+        addOnBoundary(made);
+    }
     if (behind != kNone) {
+        add(behind);
         joinEdges(_numCorners - 1, _verts[vert].corner);
     }
-    // The other edges, and that to the vertex where another face follows, are on the boundary.
-    _verts[last].corner = first + 1;
-    for (int made = firstMade; made < _numMade; ++made) {
-        _verts[made].corner = first + 2 + made - firstMade;
-    }
+    face[0] = std::uint8_t(_numCorners - first);
+    _numFaceBytes = int(to - _faces);
 }
 
 GrowingPatch::Run *GrowingPatch::GetRuns(Run *runs) const {
@@ -175,16 +174,18 @@ void GrowingPatch::GetFaces(std::vector<int> &sizes, std::vector<int> &verts,
                         : isPoint(vert) ? _numInner + numPoints++
                                         : kNone;
     }
-    verts.reserve(std::size_t(_numFaceBytes));
-    sizes.reserve(std::size_t(_numFaceBytes) / 4);
+    verts.resize(std::size_t(_numCorners));
+    sizes.resize(std::size_t(_numFaceBytes - _numCorners));
+    int *toSize = sizes.data();
+    int *toVert = verts.data();
     for (std::uint8_t const *face = _faces; face != _faces + _numFaceBytes; face += 1 + face[0]) {
-        sizes.push_back(face[0]);
+        *toSize++ = face[0];
         for (int i = 1; i <= face[0]; ++i) {
             int vert = face[i];
             while (numbers[vert] == kNone) {
                 vert = _verts[vert].same;
             }
-            verts.push_back(numbers[vert]);
+            *toVert++ = numbers[vert];
         }
     }
 }

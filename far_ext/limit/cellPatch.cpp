@@ -86,23 +86,16 @@ void GatherBaseCell(SurfaceFaces const &faces, Index face, Sdc::Options sdcOptio
     gather(gatherer, faces.GetLevel(), faces.GetLevelFace(face).face, cell);
 }
 
-CellPatch MakePlainBaseCell(std::vector<int> faceSizes, std::vector<Index> faceVerts,
-                            std::vector<Index> otherCorners, int numPoints) {
-    auto const size = std::size_t(faceSizes[0]);
-    CellPatch cell;
-    cell.locals.resize(size);
-    std::iota(cell.locals.begin(), cell.locals.end(), 0);
-    cell.corners.assign(faceVerts.begin(), faceVerts.begin() + std::ptrdiff_t(size));
+void FinishPlainBaseCell(int numPoints, CellPatch &cell) {
     LimitPatch &patch = cell.patch;
+    cell.locals.resize(std::size_t(patch.faceSizes[0]));
+    std::iota(cell.locals.begin(), cell.locals.end(), 0);
+    cell.corners.assign(patch.faceVerts.begin(), patch.faceVerts.begin() + patch.faceSizes[0]);
     patch.sources.resize(std::size_t(numPoints));
     std::iota(patch.sources.begin(), patch.sources.end(), 0);
-    patch.edgeSharpness.resize(faceVerts.size());
-    patch.diagonalSharpness.resize(faceSizes.size());
+    patch.edgeSharpness.resize(patch.faceVerts.size());
+    patch.diagonalSharpness.resize(patch.faceSizes.size());
     patch.vertSharpness.resize(std::size_t(numPoints));
-    patch.faceSizes = std::move(faceSizes);
-    patch.faceVerts = std::move(faceVerts);
-    patch.otherCorners = std::move(otherCorners);
-    return cell;
 }
 
 void FindBaseCellTurns(SurfaceFaces const &faces, Index face, int *turns) {
