@@ -94,7 +94,7 @@ void Surface<REAL>::ComputePatchPoints(REAL patchPoints[],
                                        PointDescriptor const &patchPointDesc) const {
     if (IsValid() && !GetFace().type.IsInLattice()) {
         findPatches().MakePoints(
-            GetFace().type, _patchLevel, patchPoints, patchPointDesc.size, patchPointDesc.stride,
+            GetFace().type, patchPoints, patchPointDesc.size, patchPointDesc.stride,
             patchPoints + std::ptrdiff_t(_numControlPoints) * patchPointDesc.stride);
     }
 }
@@ -103,9 +103,13 @@ template <typename REAL>
 void Surface<REAL>::evaluate(REAL const uv[2], int numDerivatives, REAL const patchPoints[],
                              PointDescriptor const &pointDesc, REAL *const results[6]) const {
     if (IsValid()) {
-        findPatches().Evaluate(_parameterization, GetFaceShape(), _patchLevel,
-                               {double(uv[0]), double(uv[1])}, numDerivatives, patchPoints,
-                               pointDesc.size, pointDesc.stride, results);
+        internal::FacePatches<REAL> const &patches = findPatches();
+        if (patches.GetNumPoints() > 0) {
+            patchPoints += std::ptrdiff_t(_numControlPoints) * pointDesc.stride;
+        }
+        patches.Evaluate(_parameterization, GetFaceShape(), _patchLevel,
+                         {double(uv[0]), double(uv[1])}, numDerivatives, patchPoints,
+                         pointDesc.size, pointDesc.stride, results);
     }
 }
 
@@ -247,8 +251,8 @@ void Surface<REAL>::ApplyStencil(REAL const stencil[], REAL const controlPoints[
     if (!IsValid()) {
         return;
     }
-    internal::SumUp(stencil, GetNumControlPoints(), controlPoints, nullptr, controlPointDesc,
-                    result);
+    internal::SumUp(stencil, std::size_t(_numControlPoints), controlPoints, nullptr,
+                    std::size_t(controlPointDesc.size), controlPointDesc.stride, result);
 }
 
 template <typename REAL>
@@ -258,8 +262,8 @@ void Surface<REAL>::ApplyStencilFromMesh(REAL const stencil[], REAL const meshPo
     if (!IsValid()) {
         return;
     }
-    internal::SumUp(stencil, GetNumControlPoints(), meshPoints, GetFace().GetPoints(),
-                    meshPointDesc, result);
+    internal::SumUp(stencil, std::size_t(_numControlPoints), meshPoints, GetFace().GetPoints(),
+                    std::size_t(meshPointDesc.size), meshPointDesc.stride, result);
 }
 
 template class Surface<float>;

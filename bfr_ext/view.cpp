@@ -112,16 +112,15 @@ private:
 /// A base face with its control points, of three numbers each.
 class FaceToMeasure {
 public:
-    /// \param indices  which points are those of the face; null: all in turn
-    /// \param shared   rings that faces share, or null
-    void Set(BaseFace const &face, PointArray const &points, Far::Index const *indices,
-             SharedRings<float> *shared) {
+    /// \param points  of the mesh
+    /// \param shared  rings that faces share
+    void Set(BaseFace const &face, PointArray const &points, SharedRings<float> &shared) {
         _face = &face;
-        _sources = {points.floats, points.stride, 3,     std::size_t(face.numPoints),
-                    nullptr,       indices,       shared};
+        _sources = {points.floats, points.stride,    3,      std::size_t(face.numPoints),
+                    nullptr,       face.GetPoints(), &shared};
         _points.resize(3 * std::size_t(face.numPoints));
         for (int i = 0; i < face.numPoints; ++i) {
-            Vector3 const point = points[indices ? indices[i] : i];
+            Vector3 const point = points[face.GetPoints()[i]];
             std::copy(point.begin(), point.end(), &_points[3 * std::size_t(i)]);
         }
     }
@@ -130,11 +129,7 @@ public:
     FaceShape GetShape() const { return GetType().GetShape(_face->size); }
     void SetCells(RefinedCells &cells) const { cells.SetBase(GetType(), _points.data(), 3); }
     void Sample(CellGrid &grid, std::vector<double> &samples) const {
-        if (_sources.points && GetType().GetPlain()) {
-            grid.Sample(*_face, _sources, samples);
-        } else {
-            grid.Sample(GetType(), _points.data(), samples);
-        }
+        grid.Sample(*_face, _points.data(), _sources, samples);
     }
     /// Whether the hull of its points is outside of the picture, which contains the surface.
     bool IsOutside(ViewGeometry const &geometry) const {
@@ -561,24 +556,6 @@ struct ViewData {
 
 namespace {
 
-// Refines a tree of one cell.
-void refineTree(ViewData const &view, CellTree &tree,
-                std::function<FaceToMeasure const &()> const &getBase, FaceMeasures &measures,
-                CellTree const *previous, std::vector<CellVisibility> *visibility) {
-    if (visibility) {
-        visibility->clear();
-    }
-    if (view.isValid) {
-        bool const hasPrevious = previous && previous->GetFaceShape() == tree.GetFaceShape();
-        TreeMaker(view.geometry, view.options, getBase, measures, hasPrevious ? previous : nullptr,
-                  tree, visibility)
-            .Make();
-    }
-    if (visibility) {
-        visibility->resize(std::size_t(tree.GetNumCells()));
-    }
-}
-
 // The surface of one face after the other, with its control points.
 class FaceSurface {
 public:
@@ -591,8 +568,7 @@ public:
             _face = face;
             _surface.Clear();
             if (_factory.TryInit(face, FarExt::Interpolation::Vertex, -1, _surface).IsOk()) {
-                _base.Set(_surface.GetFace(), _meshPoints, _surface.GetFace().GetPoints(),
-                          &_shared);
+                _base.Set(_surface.GetFace(), _meshPoints, _shared);
             }
         }
         return _surface.IsValid() ? &_base : nullptr;
@@ -607,31 +583,12 @@ private:
     FaceToMeasure _base;
 };
 
-// View::MakeEdge().
-Polyline makePolyline(ViewData const &view, FaceToMeasure const &face, int edge,
-                      Polyline const *previous) {
-    if (!view.isValid) {
-        return Polyline();
-    }
-    CellValues values;
-    bool const isReversed = face.SetEdge(edge, values).isReversed;
-    Polyline last; // in the direction of the item
-    if (previous) {
-        last = isReversed ? previous->GetReversed() : *previous;
-    }
-    Polyline polyline;
-    Polyline::FromPlaces(EdgeMaker(view.geometry, view.options, last).Make(values), &polyline);
-    return isReversed ? polyline.GetReversed() : polyline;
-}
-
 // Counts the cells of a forest that are not refined.
-View::Counts countCells(CellForest const &forest, int maxLevel,
-                        std::vector<std::vector<CellVisibility>> const &visibility) {
-    View::Counts counts;
+void countCells(CellForest const &forest, int maxLevel, View::Counts &counts) {
     counts.cellsByLevel.assign(std::size_t(maxLevel) + 1, 0);
-    for (std::size_t face = 0; face < visibility.size(); ++face) {
+    for (std::size_t face = 0; face < counts.visibilities.size(); ++face) {
         CellTree const &tree = forest.GetTree(int(face));
-        std::vector<CellVisibility> const &found = visibility[face];
+        std::vector<CellVisibility> const &found = counts.visibilities[face];
         for (std::size_t cell = 0; cell < found.size(); ++cell) {
             if (!tree.IsRefined(int(cell))) {
                 ++counts.cellsByLevel[std::size_t(tree.GetLevel(int(cell)))];
@@ -640,7 +597,6 @@ View::Counts countCells(CellForest const &forest, int maxLevel,
             }
         }
     }
-    return counts;
 }
 
 } // namespace
@@ -679,25 +635,6 @@ Camera const &View::GetCamera() const { return _data->camera; }
 
 View::Options const &View::GetOptions() const { return _data->options; }
 
-CellTree View::makeTree(BaseFace const &face, internal::PointArray const &controlPoints,
-                        CellTree const *previous, std::vector<CellVisibility> *visibility) const {
-    internal::FaceToMeasure base;
-    base.Set(face, controlPoints, nullptr, nullptr);
-    internal::FaceMeasures measures;
-    CellTree tree(base.GetShape());
-    internal::refineTree(
-        *_data, tree, [&]() -> internal::FaceToMeasure const & { return base; }, measures, previous,
-        visibility);
-    return tree;
-}
-
-Polyline View::makeEdge(BaseFace const &face, int edge, internal::PointArray const &controlPoints,
-                        Polyline const *previous) const {
-    internal::FaceToMeasure base;
-    base.Set(face, controlPoints, nullptr, nullptr);
-    return internal::makePolyline(*_data, base, edge, previous);
-}
-
 CellForest View::makeForest(SurfaceFactory const &factory, ViewBounds *viewBounds,
                             internal::PointArray const &meshPoints, CellForest const *previous,
                             Counts *counts, FarExt::CallStatus *status) const {
@@ -714,8 +651,10 @@ CellForest View::makeForest(SurfaceFactory const &factory, ViewBounds *viewBound
     CellForest const *const last =
         previous && previous->GetNumFaces() == forest.GetNumFaces() ? previous : nullptr;
     bool const hasLastEdges = last && last->GetFaces().GetNumEdges() == faces.GetNumEdges();
-    std::vector<std::vector<CellVisibility>> visibility(counts ? std::size_t(forest.GetNumFaces())
-                                                               : 0);
+    if (counts) {
+        *counts = {};
+        counts->visibilities.resize(std::size_t(forest.GetNumFaces()));
+    }
     // A tree grows in the memory of the last one, and is kept in no more than it takes.
     struct State {
         internal::FaceSurface surface;
@@ -747,16 +686,26 @@ CellForest View::makeForest(SurfaceFactory const &factory, ViewBounds *viewBound
                     return *state.surface.Find(face);
                 };
                 state.tree = forest.GetTree(face);
-                internal::refineTree(*_data, state.tree, std::cref(getBase), measures,
-                                     last ? &last->GetTree(face) : nullptr,
-                                     counts ? &visibility[std::size_t(face)] : nullptr);
+                bool const hasLastTree =
+                    last && last->GetTree(face).GetFaceShape() == state.tree.GetFaceShape();
+                std::vector<CellVisibility> *const visibility =
+                    counts ? &counts->visibilities[std::size_t(face)] : nullptr;
+                if (IsValid()) {
+                    internal::TreeMaker(_data->geometry, _data->options, std::cref(getBase),
+                                        measures, hasLastTree ? &last->GetTree(face) : nullptr,
+                                        state.tree, visibility)
+                        .Make();
+                }
+                if (visibility) {
+                    visibility->resize(std::size_t(state.tree.GetNumCells()));
+                }
                 if (state.tree.IsRefined(0)) {
                     forest.SetTree(face, state.tree);
                 }
                 if (bounds) {
                     bounds->Trim(face, memory);
                 }
-                for (int local = 0; local < state.tree.GetFaceSize(); ++local) {
+                for (int local = 0; IsValid() && local < state.tree.GetFaceSize(); ++local) {
                     auto const [edge, isReversed] = faces.GetEdge(face, local);
                     // The first of its faces that has a surface makes an edge, since holes have none.
                     if (!isInfSharp(edge) ||
@@ -764,14 +713,18 @@ CellForest View::makeForest(SurfaceFactory const &factory, ViewBounds *viewBound
                         !state.surface.Find(face)) {
                         continue;
                     }
-                    Polyline lastEdge; // empty where there is none
-                    if (hasLastEdges) {
-                        Polyline const &ofEdge = last->GetEdge(edge);
-                        lastEdge = isReversed ? ofEdge.GetReversed() : ofEdge;
-                    }
-                    Polyline made =
-                        internal::makePolyline(*_data, *state.surface.Find(face), local, &lastEdge);
-                    forest.SetEdge(edge, isReversed ? made.GetReversed() : std::move(made));
+                    internal::CellValues values;
+                    bool const isTurned =
+                        isReversed != state.surface.Find(face)->SetEdge(local, values).isReversed;
+                    auto const turn = [&](Polyline const &polyline) {
+                        return isTurned ? polyline.GetReversed() : polyline;
+                    };
+                    Polyline const lastEdge = hasLastEdges ? turn(last->GetEdge(edge)) : Polyline();
+                    Polyline made;
+                    Polyline::FromPlaces(
+                        internal::EdgeMaker(_data->geometry, _data->options, lastEdge).Make(values),
+                        &made);
+                    forest.SetEdge(edge, turn(made));
                 }
             }
         },
@@ -788,8 +741,7 @@ CellForest View::makeForest(SurfaceFactory const &factory, ViewBounds *viewBound
                       : FarExt::CallStatus();
     }
     if (counts) {
-        *counts =
-            internal::countCells(forest, IsValid() ? GetOptions().GetMaxLevel() : 0, visibility);
+        internal::countCells(forest, IsValid() ? GetOptions().GetMaxLevel() : 0, *counts);
     }
     return forest;
 }

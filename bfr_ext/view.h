@@ -62,8 +62,7 @@ enum class CellVisibility : unsigned char {
 /// or two steps on, and some more for the surface between these.  Where nothing sharp is near, every other level is
 /// expected to have a quarter of the distance.  In pixels it is as large as anywhere in a ball around the cell: at the
 /// least depth, and furthest from the axis.
-/// Sharp edges and boundaries, whose curve may bend in the plane of a cell, get points of their own
-/// (MakeEdge()).
+/// Sharp edges and boundaries, whose curve may bend in the plane of a cell, get points of their own.
 ///
 /// Facets are what LevelTessellation makes of triangles or quads: hexagons are within the same distance when they are
 /// cut along the diagonal of their half cells, from corner 0 to 3, as a fan from corner 0 does.  A surface without a
@@ -165,46 +164,19 @@ public:
     /// The options.
     Options const &GetOptions() const;
 
-    /// \brief Makes the tree of a face.
-    ///
-    /// \param surface       a valid surface of positions
-    /// \param controlPoints  its control points, of 3 numbers each
-    /// \param pointDesc      how they lie; the first 3 numbers of each are read
-    /// \param previous       the tree of the last frame, or null; of another face size it is ignored
-    /// \param visibility     null, or gets the visibility of each cell of the tree
-    template <typename REAL>
-    CellTree MakeTree(Surface<REAL> const &surface, REAL const controlPoints[],
-                      typename Surface<REAL>::PointDescriptor const &pointDesc,
-                      CellTree const *previous = nullptr,
-                      std::vector<CellVisibility> *visibility = nullptr) const {
-        return makeTree(surface.GetFace(), {controlPoints, pointDesc.stride}, previous, visibility);
-    }
-
-    /// \brief Makes the polyline of a sharp edge or boundary, which is as close to the curve as facets
-    /// are to the surface, and the same from both sides.
-    ///
-    /// \param surface        a valid surface of positions
-    /// \param edge           of the face, from vertex \p edge to the next, as the polyline
-    /// \param controlPoints  its control points, of 3 numbers each
-    /// \param pointDesc      how they lie; the first 3 numbers of each are read
-    /// \param previous       that of the last frame, in the same direction, or null
-    /// \return               without inner points if the view is invalid; of an edge that is not sharp, which
-    ///                       no forest needs, as of its curve alone
-    template <typename REAL>
-    Polyline MakeEdge(Surface<REAL> const &surface, int edge, REAL const controlPoints[],
-                      typename Surface<REAL>::PointDescriptor const &pointDesc,
-                      Polyline const *previous = nullptr) const {
-        return makeEdge(surface.GetFace(), edge, {controlPoints, pointDesc.stride}, previous);
-    }
-
-    /// \brief Counts of faces and cells of a mesh.
+    /// \brief Counts of the cells of a mesh that are not refined, and what is seen of all.
     struct Counts {
         std::vector<long> cellsByLevel; ///< those that are not refined
         long outside = 0;               ///< of these
         long backFacing = 0;            ///< of these
+        /// By face with a surface, the visibility of each cell of its tree; none of others.
+        std::vector<std::vector<CellVisibility>> visibilities;
     };
     /// \brief Makes the trees of all faces that have a surface, and the polylines of all edges, in
     /// parallel.
+    ///
+    /// Polylines of sharp edges and boundaries are as close to the curve as facets are to the surface, and the same from
+    /// both sides.
     ///
     /// \param factory     of the mesh, whose refiner the forest refers to
     /// \param meshPoints  the positions of its vertices
@@ -237,12 +209,6 @@ public:
     }
 
 private:
-    using BaseFace = internal::KeptFace<internal::BaseType>;
-
-    CellTree makeTree(BaseFace const &face, internal::PointArray const &controlPoints,
-                      CellTree const *previous, std::vector<CellVisibility> *visibility) const;
-    Polyline makeEdge(BaseFace const &face, int edge, internal::PointArray const &controlPoints,
-                      Polyline const *previous) const;
     CellForest makeForest(SurfaceFactory const &factory, ViewBounds *bounds,
                           internal::PointArray const &meshPoints, CellForest const *previous,
                           Counts *counts, FarExt::CallStatus *status) const;

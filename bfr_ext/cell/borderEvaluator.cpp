@@ -7,13 +7,6 @@ namespace OpenSubdivHex::BfrExt::internal {
 
 namespace {
 
-// Finds what the sources of an edge weigh at a place.
-std::vector<double> findWeights(CellType const &type, RingCell const *cell, double point) {
-    std::vector<double> weights =
-        FindBorderStencil(type, point, cell ? cell->GetSources() : StencilOf::Points);
-    return cell ? cell->GetPlaces().Order(weights) : weights;
-}
-
 // The places inside of an edge of a level, from its start on; they are the same from its end.
 std::vector<double> makeEdgePoints(int level) {
     Polyline const polyline(level);
@@ -31,6 +24,14 @@ std::vector<double> makeRatePoints(int rate) {
         points.push_back(double(i) / rate);
     }
     return points;
+}
+
+// Returns a matrix of the places of an edge, or of a vertex.
+template <typename REAL>
+PlaceMatrix<REAL> makeMatrix(PlaceSource<REAL> const &source, std::vector<double> const &points) {
+    return source.MakeMatrix(points.size(), [&](std::size_t row) {
+        return FindBorderStencil(*source.type, points[row], source.GetSources());
+    });
 }
 
 } // namespace
@@ -92,11 +93,11 @@ void BorderEvaluator<REAL>::evaluateVertex(std::size_t vert, REAL *result) {
                           _points->GetSources(item.points.size(), item.points.data()));
         _vertexValues.EvaluateVertex(*item.rings->cell, 0, result);
     } else {
-        CellType const &type = *item.type;
-        PlaceMatrix<REAL> const &matrix = find(type.GetPatterns(), PatternOf::Border, 0, _vertex,
-                                               [&] { return makeMatrix(type, nullptr, {0}); });
-        SumUpPlaces(matrix, {_points->Get(), _points->GetStride(), GetSize(), item.points.data(),
-                             result, 0});
+        PlaceSource<REAL> const source = {item.type, nullptr, _points->Get(), _points->GetStride(),
+                                          item.points.data()};
+        PlaceMatrix<REAL> const &matrix = find(source.GetPatterns(), PatternOf::Border, 0, _vertex,
+                                               [&] { return makeMatrix(source, {0}); });
+        source.Evaluate(matrix, GetSize(), result, 0);
     }
 }
 
@@ -198,16 +199,16 @@ void BorderEvaluator<REAL>::evaluateInside(std::size_t edge, bool isRate, int le
                                            std::ptrdiff_t stride) {
     setEdge(edge);
     auto const make = [&] {
-        return makeMatrix(*_edge.type, _edge.cell,
-                          isRate ? makeRatePoints(level) : makeEdgePoints(level));
+        return makeMatrix(_edge, isRate ? makeRatePoints(level) : makeEdgePoints(level));
     };
     bool const isKept = !isRate || level <= kMaxKeptRate;
     PlaceMatrix<REAL> const &matrix =
-        isKept ? find(getPatterns(*_edge.type, _edge.cell),
-                      isRate ? PatternOf::BorderRate : PatternOf::Border, level, _places, make)
+        isKept ? find(_edge.GetPatterns(), isRate ? PatternOf::BorderRate : PatternOf::Border,
+                      level, _places, make)
                : _placeMatrix = make();
     auto const last = std::ptrdiff_t(matrix.GetNumPlaces()) - 1;
-    sumUp(matrix, _isReversed ? results + last * stride : results, _isReversed ? -stride : stride);
+    _edge.Evaluate(matrix, GetSize(), _isReversed ? results + last * stride : results,
+                   _isReversed ? -stride : stride);
 }
 
 // They are kept one by one, since polylines have few in common, and without what a matrix of one place is
@@ -219,32 +220,20 @@ void BorderEvaluator<REAL>::EvaluateKeptPoint(std::size_t edge, Pair const &plac
     double const point = place[_isReversed ? 0 : 1];
     int const key = int(point * Polyline::kLength);
     if (key % kStep != 0) {
-        sumUp(makeMatrix(*_edge.type, _edge.cell, {point}), result, 0);
+        _edge.Evaluate(makeMatrix(_edge, {point}), GetSize(), result, 0);
         return;
     }
-    std::vector<REAL> const &weights =
-        getPatterns(*_edge.type, _edge.cell)
-            .template Get<std::vector<REAL>>(
-                PatternTable::GetKind<REAL>(PatternOf::BorderPlace), &key, &key + 1, [&] {
-                    std::vector<double> const stencil = findWeights(*_edge.type, _edge.cell, point);
-                    return std::vector<REAL>(stencil.begin(), stencil.end());
-                });
+    std::vector<REAL> const &weights = _edge.GetPatterns().template Get<std::vector<REAL>>(
+        PatternTable::GetKind<REAL>(PatternOf::BorderPlace), &key, &key + 1, [&] {
+            std::vector<double> const stencil =
+                _edge.Order(FindBorderStencil(*_edge.type, point, _edge.GetSources()));
+            return std::vector<REAL>(stencil.begin(), stencil.end());
+        });
     if (_placeMatrix.GetNumPoints() != weights.size()) {
         _placeMatrix = PlaceMatrix<REAL>(1, weights.size());
     }
     _placeMatrix.Set(0, weights);
-    sumUp(_placeMatrix, result, 0);
-}
-
-template <typename REAL>
-PlaceMatrix<REAL> BorderEvaluator<REAL>::makeMatrix(CellType const &type, RingCell const *cell,
-                                                    std::vector<double> const &points) {
-    PlaceMatrix<REAL> matrix(points.size(),
-                             cell ? cell->GetColumns().size() : std::size_t(type.GetNumPoints()));
-    for (std::size_t place = 0; place < points.size(); ++place) {
-        matrix.Set(place, findWeights(type, cell, points[place]));
-    }
-    return matrix;
+    _edge.Evaluate(_placeMatrix, GetSize(), result, 0);
 }
 
 template class BorderEvaluator<float>;

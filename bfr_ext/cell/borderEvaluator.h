@@ -2,9 +2,8 @@
 #ifndef OPENSUBDIVHEX_BFR_EXT_CELL_BORDER_EVALUATOR_H
 #define OPENSUBDIVHEX_BFR_EXT_CELL_BORDER_EVALUATOR_H
 
-#include "cellStencil.h"
 #include "gatheredPoints.h"
-#include "placeKernel.h"
+#include "placeSource.h"
 
 #include <cstdint>
 #include <vector>
@@ -50,15 +49,6 @@ public:
     std::size_t GetSize() const { return _points->GetSize(); }
 
 private:
-    // Sources of the points of an edge.
-    struct Sources {
-        CellType const *type;
-        RingCell const *cell; // null: the points of the type
-        REAL const *points;
-        std::ptrdiff_t stride;
-        int const *indices;
-    };
-
     // A matrix that was found.
     struct Found {
         PatternTable *patterns;
@@ -67,11 +57,6 @@ private:
         PlaceMatrix<REAL> const *matrix;
     };
 
-    static PlaceMatrix<REAL> makeMatrix(CellType const &type, RingCell const *cell,
-                                        std::vector<double> const &points);
-    static PatternTable &getPatterns(CellType const &type, RingCell const *cell) {
-        return cell ? cell->GetPatterns() : type.GetPatterns();
-    }
     template <typename MAKE>
     PlaceMatrix<REAL> const &find(PatternTable &patterns, PatternOf of, int number, Found &last,
                                   MAKE const &make);
@@ -81,10 +66,6 @@ private:
     void setValues();
     void evaluateVertex(std::size_t vert, REAL *result);
     void setEdge(std::size_t edge);
-    void sumUp(PlaceMatrix<REAL> const &matrix, REAL *results, std::ptrdiff_t resultStride) const {
-        SumUpPlaces(matrix,
-                    {_edge.points, _edge.stride, GetSize(), _edge.indices, results, resultStride});
-    }
 
     CellType const *_type = nullptr;
     PlainFaceType const *_plain = nullptr;
@@ -94,7 +75,7 @@ private:
     std::size_t _paddedSize = 0;
     // For the last edge, if any.
     std::size_t _edgeNumber = 0;
-    Sources _edge = {};
+    PlaceSource<REAL> _edge = {};
     bool _isReversed = false;
     // The number of the type of the last face, if it is not plain, and its items: mostly the next face is alike.
     struct KnownItem {

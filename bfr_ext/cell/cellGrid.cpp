@@ -25,11 +25,7 @@ CellGrid::CellGrid(FaceShape shape)
     : _shape(shape), _places(shape, kNumSteps),
       _plan(shape, kNumSteps, _places.GetAll(), CellPlan::Use::AllPoints, true),
       _planOfBase(shape, kNumSteps, _places.GetAll(), CellPlan::Use::AllPoints, shape.size == 0) {
-    auto const &corners = HalfCell::kCorners;
-    add(shape.size > 0
-            ? CellOutline<Pair>::MakeWhole(1)
-            : CellOutline<Pair>::MakeHalf(0, {corners[0], corners[1], corners[2], corners[3]}),
-        kNumSteps);
+    add(CellOutline<Pair>::MakeRoot(shape), kNumSteps);
 }
 
 CellGrid &CellGrid::Get(FaceShape shape) {
@@ -66,30 +62,29 @@ void CellGrid::Sample(CellValues const &cell, std::vector<double> &samples) {
            });
 }
 
-void CellGrid::Sample(BaseType const &type, double const *controlPoints,
-                      std::vector<double> &samples) {
+void CellGrid::Sample(BaseFace const &face, double const *controlPoints,
+                      RingSources<float> const &shared, std::vector<double> &samples) {
+    BaseType const &type = face.type;
     PlainFaceType const *const plain = type.GetPlain();
-    int const numPoints = plain ? plain->GetNumPoints() : type->GetNumPoints();
-    sample(controlPoints, 3, numPoints, samples, [&](float *const *results) {
+    auto const evaluateRings = [&](RingSources<float> const &sources, float *const *results) {
+        _ringValues.Set(plain->GetRings().GetRings(), face.GetTurns() + face.size, sources);
+        _evaluator.Evaluate(*plain, _ringValues, _planOfBase, results, 3);
+    };
+    if (plain && shared.points) {
+        _samples.resize(3 * _places.GetSize());
+        float *const results[1] = {_samples.data()};
+        evaluateRings(shared, results);
+        samples.assign(_samples.begin(), _samples.end());
+        return;
+    }
+    sample(controlPoints, 3, face.numPoints, samples, [&](float *const *results) {
         if (plain) {
-            _ringValues.Set(plain->GetRings().GetRings(), nullptr,
-                            {_points.data(), 3, 3, std::size_t(numPoints), nullptr});
-            _evaluator.Evaluate(*plain, _ringValues, _planOfBase, results, 3);
+            evaluateRings({_points.data(), 3, 3, std::size_t(face.numPoints), nullptr}, results);
         } else {
             _evaluator.Evaluate(*type, type.IsInLattice() ? _plan : _planOfBase, 3, _points.data(),
                                 3, results, 3);
         }
     });
-}
-
-void CellGrid::Sample(BaseFace const &face, RingSources<float> const &sources,
-                      std::vector<double> &samples) {
-    PlainFaceType const &plain = *face.type.GetPlain();
-    _ringValues.Set(plain.GetRings().GetRings(), face.GetTurns() + face.size, sources);
-    _samples.resize(3 * _places.GetSize());
-    float *const results[1] = {_samples.data()};
-    _evaluator.Evaluate(plain, _ringValues, _planOfBase, results, 3);
-    samples.assign(_samples.begin(), _samples.end());
 }
 
 // Has evaluate(results) make the samples from the points in single precision.

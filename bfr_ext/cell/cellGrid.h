@@ -31,10 +31,11 @@ public:
 
     /// Writes the samples of a cell that is no base face, three numbers each.
     void Sample(CellValues const &cell, std::vector<double> &samples);
-    /// Overload for a base face, whose control points are three numbers each, without gaps.
-    void Sample(BaseType const &type, double const *controlPoints, std::vector<double> &samples);
-    /// Overload for a plain base face that is not in a lattice.
-    void Sample(BaseFace const &face, RingSources<float> const &sources,
+    /// Overload for a base face.
+    ///
+    /// \param controlPoints  three numbers each, without gaps
+    /// \param shared         sources of its rings, without points where faces share none
+    void Sample(BaseFace const &face, double const *controlPoints, RingSources<float> const &shared,
                 std::vector<double> &samples);
 
     /// Measures the cell, but where it faces.

@@ -48,11 +48,7 @@ struct CellPlan::Apart {
 };
 
 LeafPlaces::LeafPlaces(FaceShape shape, int numSteps) : _shape(shape), _numSteps(numSteps) {
-    auto const root =
-        shape.size > 0
-            ? CellOutline<Pair>::MakeWhole(1)
-            : CellOutline<Pair>::MakeHalf(0, {HalfCell::kCorners[0], HalfCell::kCorners[1],
-                                              HalfCell::kCorners[2], HalfCell::kCorners[3]});
+    auto const root = CellOutline<Pair>::MakeRoot(shape);
     for (int corner = 0; corner < root.GetNumCorners(shape); ++corner) {
         add(root.GetCorner(shape, corner));
     }

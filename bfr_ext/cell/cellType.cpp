@@ -179,8 +179,7 @@ void CellType::findDifferences(int corner, int numSteps, Vector (&result)[2]) co
     }
     // For a half cell, at an end of its long edge.
     std::vector<Vector> const &points = type->GetCornerPoints();
-    Vector differences[2];
-    auto &[along, across] = differences;
+    auto &[along, across] = result;
     along.resize(points[0].size());
     across.resize(points[0].size());
     for (std::size_t i = 0; i < along.size(); ++i) {
@@ -190,14 +189,12 @@ void CellType::findDifferences(int corner, int numSteps, Vector (&result)[2]) co
     }
     Vector scratch;
     for (auto step = steps.rbegin(); step != steps.rend(); ++step) {
-        for (Vector &left : differences) {
+        for (Vector &left : result) {
             (*step)->ApplyLeft(left, scratch);
             left.swap(scratch);
         }
     }
-    for (std::size_t k = 0; k < 2; ++k) {
-        result[k] = map.GetDerivatives(differences, k);
-    }
+    map.TurnDerivatives(result);
 }
 
 // The derivatives that the cell before the last has.
@@ -248,16 +245,16 @@ CellType::Derivatives const &CellType::GetDerivatives(int corner, StencilOf of,
     return _patterns.Get<Derivatives>(kKind, key, key + 3, [&] {
         CornerChild const next = FindCornerChild(GetShape(), corner);
         Child const &child = GetChildren()[next.child];
-        Derivatives const ofChild =
+        Derivatives ofChild =
             areParents ? child.type->findEarlierDerivatives(next.corner)
                        : child.type->GetDerivatives(next.corner, StencilOf::Points, true);
+        next.map->TurnDerivatives(ofChild.rows);
         Derivatives result;
         for (std::size_t k = 0; k < 2; ++k) {
-            Vector const sum = next.map->GetDerivatives(ofChild.rows, k);
             if (of == StencilOf::Step) {
-                child.step.Spread(sum, result.rows[k]);
+                child.step.Spread(ofChild.rows[k], result.rows[k]);
             } else {
-                child.step.ApplyLeft(sum, result.rows[k]);
+                child.step.ApplyLeft(ofChild.rows[k], result.rows[k]);
             }
         }
         return result;

@@ -146,20 +146,15 @@ void CellValues::EvaluateCorner(int corner, double *du, double *dv) const {
     } else {
         Multiply(_toCoords, MakeBasePoint(_faceShape, _sector, {}).toCoords, toCoords);
     }
-    auto const length = std::size_t(_length);
-    _scratch.resize(2 * length);
     for (std::size_t i = 0; i < 2; ++i) {
-        double *const result = _scratch.data() + i * length;
+        double *const result = i == 0 ? du : dv;
         if (_isInner) {
             sum(type.GetDerivatives(corner, StencilOf::Step).rows[i], _refined, result);
         } else {
             sum(type.GetDerivatives(corner).rows[i], _points, result);
         }
     }
-    for (std::size_t k = 0; k < length; ++k) {
-        du[k] = toCoords[0][0] * _scratch[k] + toCoords[1][0] * _scratch[length + k];
-        dv[k] = toCoords[0][1] * _scratch[k] + toCoords[1][1] * _scratch[length + k];
-    }
+    TurnDerivatives(toCoords, std::size_t(_length), du, dv, du, dv);
 }
 
 } // namespace OpenSubdivHex::BfrExt::internal

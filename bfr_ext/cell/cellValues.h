@@ -70,7 +70,6 @@ private:
     mutable bool _isRefined = false;
     mutable std::vector<double> _refined; // the points of all children
     std::vector<int> _indices;
-    mutable std::vector<double> _scratch;
 };
 
 } // namespace OpenSubdivHex::BfrExt::internal

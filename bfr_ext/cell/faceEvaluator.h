@@ -9,20 +9,6 @@
 
 namespace OpenSubdivHex::BfrExt::internal {
 
-/// Writes a weighted sum of points, in double precision: of all, or of those that \p indices name.
-template <typename REAL, typename WEIGHT>
-void SumUp(WEIGHT const *weights, int numPoints, REAL const *points, Far::Index const *indices,
-           typename Surface<REAL>::PointDescriptor const &desc, REAL *result) {
-    for (int k = 0; k < desc.size; ++k) {
-        double sum = 0;
-        for (int i = 0; i < numPoints; ++i) {
-            std::ptrdiff_t const point = indices ? indices[i] : i;
-            sum += double(weights[i]) * double(points[point * desc.stride + k]);
-        }
-        result[k] = REAL(sum);
-    }
-}
-
 /// \brief Evaluates a base face with its control points at all places of tessellations.
 ///
 /// Leaves of types make the points inside (PatchEvaluator, RateEvaluator), and BorderEvaluator those on the border.
@@ -61,8 +47,8 @@ private:
     void evaluateBorder(TessellationData const &tessellation, BorderEvaluator<REAL> &evaluator,
                         REAL *p, PointDescriptor const &resultDesc) const;
     void sumUp(std::vector<double> const &weights, REAL *result) {
-        SumUp(weights.data(), _face.numPoints, _points.Get(), nullptr,
-              PointDescriptor(_size, int(_points.GetStride())), result);
+        SumUp(weights.data(), weights.size(), _points.Get(), nullptr, std::size_t(_size),
+              _points.GetStride(), result);
     }
 
     BaseFace const &_face;

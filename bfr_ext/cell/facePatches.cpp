@@ -243,22 +243,21 @@ public:
         _points = points;
     }
 
-    void MakeOfRings(PlainFaceType const &type, int level, REAL const *control) {
-        FaceRings const &face = type.GetRings();
-        _rings.Set(face.GetRings(), nullptr,
+    // sources: of the points, here and below
+    void MakeOfRings(PlainFaceType const &type, std::vector<int> const &sources,
+                     REAL const *control) {
+        _rings.Set(type.GetRings().GetRings(), nullptr,
                    {control, _stride, _size, std::size_t(type.GetNumPoints()), nullptr});
         REAL const *const ofRings = _rings.GetPoints();
-        for (std::size_t i = 0; i <= face.GetRings().GetRings().size(); ++i) {
-            RingCell const &child = face.GetChild(i);
-            std::vector<int> const &sources = getPatches<REAL>(child, level).GetSources();
-            _rings.FindChildIndices(face, i, _indices);
-            for (int const source : sources) {
-                write(ofRings + std::size_t(_indices[std::size_t(source)]) * _paddedSize);
-            }
+        for (int const source : sources) {
+            write(ofRings + std::size_t(source) * _paddedSize);
         }
     }
 
-    void MakeOfSteps(CellType const &type, int level, REAL const *control) {
+    // getNumPoints: of a child
+    template <typename GET>
+    void MakeOfSteps(CellType const &type, int const *sources, GET const &getNumPoints,
+                     REAL const *control) {
         auto const numPoints = std::size_t(type.GetNumPoints());
         grow(_ofChild, numPoints);
         for (std::size_t i = 0; i < numPoints; ++i) {
@@ -268,23 +267,21 @@ public:
         StepMatrix const &step = type.GetStep();
         grow(_ofFace, step.GetNumRows());
         step.Apply(_ofChild.data(), _paddedSize, _ofFace.data());
-        for (CellType::Child const &child : type.GetChildren()) {
+        for (std::size_t i = 0; i < type.GetChildren().size(); ++i) {
+            CellType::Child const &child = type.GetChildren()[i];
             grow(_ofChild, child.step.GetNumRows());
             child.step.CopyPoints(_ofFace.data(), _paddedSize, _ofChild.data());
-            writeRefined(*child.type, getPatches<REAL>(*child.type, level).GetSources());
+            StepMatrix const &ofChild = child.type->GetStep();
+            grow(_refined, ofChild.GetNumRows());
+            ofChild.Apply(_ofChild.data(), _paddedSize, _refined.data());
+            int const *const end = sources + getNumPoints(i);
+            for (; sources != end; ++sources) {
+                write(&_refined[std::size_t(*sources) * _paddedSize]);
+            }
         }
     }
 
 private:
-    // Writes some of what the step of a child makes.
-    void writeRefined(CellType const &child, std::vector<int> const &sources) {
-        StepMatrix const &step = child.GetStep();
-        grow(_refined, step.GetNumRows());
-        step.Apply(_ofChild.data(), _paddedSize, _refined.data());
-        for (int const source : sources) {
-            write(&_refined[std::size_t(source) * _paddedSize]);
-        }
-    }
     void write(REAL const *point) {
         StepMatrix::Pad(point, _size, _points);
         _points += _stride;
@@ -301,7 +298,6 @@ private:
     std::vector<REAL> _ofFace;  // what its step makes
     std::vector<REAL> _ofChild; // points before its step
     std::vector<REAL> _refined;
-    std::vector<int> _indices;
 };
 
 // The coordinates of a cell in which a patch is a bilinear quadrilateral, and where a place is in it.
@@ -692,7 +688,8 @@ PatchRows<REAL>::PatchRows(std::vector<std::vector<double>> rows) {
 template <typename REAL>
 FacePatches<REAL> const &FacePatches<REAL>::Get(BaseType const &type, int level) {
     PlainFaceType const *const plain = type.GetPlain();
-    PatternTable &patterns = plain ? plain->GetRings().GetPatterns() : type->GetPatterns();
+    PatternTable &patterns =
+        plain ? plain->GetRings().GetPatternsOfChildren() : type->GetPatterns();
     return patterns.Get<FacePatches>(PatternTable::GetKind<REAL>(PatternOf::FacePatches), &level,
                                      &level + 1, [&] { return FacePatches(type, level); });
 }
@@ -701,24 +698,36 @@ template <typename REAL>
 FacePatches<REAL>::FacePatches(BaseType const &type, int level) {
     if (PlainFaceType const *const plain = type.GetPlain()) {
         FaceRings const &face = plain->GetRings();
-        for (std::size_t i = 0; i <= face.GetRings().GetRings().size(); ++i) {
-            addChild(getPatches<REAL>(face.GetChild(i), level), plain->GetNumPoints());
+        VertexRings const &rings = face.GetRings();
+        std::vector<int> indices;
+        for (std::size_t i = 0; i <= rings.GetRings().size(); ++i) {
+            RingPlaces const &places = face.GetChild(i).GetPlaces();
+            indices.resize(places.GetColumns().size());
+            face.FindChildIndices(
+                i, places,
+                [&](int ring, int ofRing) {
+                    return rings.GetPoints(ring, 0, ofRing, rings.GetLastStep());
+                },
+                indices.data());
+            addChild(getPatches<REAL>(face.GetChild(i), level),
+                     [&](int source) { return indices[std::size_t(source)]; });
         }
     } else if (type.IsInLattice()) {
         CornerAges const ages(std::size_t(type->GetNumCorners()), -1);
         _ofLattice = PatchRows<REAL>(findRows(*type, 0, ages, level));
-        add(_ofLattice.GetBlocks(), 0, type->GetNumPoints());
+        add(_ofLattice.GetBlocks(), type->GetNumPoints());
     } else {
         for (CellType::Child const &child : type->GetChildren()) {
-            addChild(getPatches<REAL>(*child.type, level), type->GetNumPoints());
+            addChild(getPatches<REAL>(*child.type, level), [](int source) { return source; });
         }
     }
+    _sources.shrink_to_fit();
+    _otherParts.shrink_to_fit();
 }
 
 template <typename REAL>
-void FacePatches<REAL>::add(std::vector<PatchBlock<REAL>> const &blocks, int firstPoint,
-                            int numPoints) {
-    Part const part = {blocks.data(), firstPoint, numPoints};
+void FacePatches<REAL>::add(std::vector<PatchBlock<REAL>> const &blocks, int numPoints) {
+    Part const part = {blocks.data(), GetNumPoints(), numPoints};
     auto const number = std::size_t(_numParts++);
     if (number == 0) {
         _numInFirst = int(blocks.size());
@@ -731,21 +740,25 @@ void FacePatches<REAL>::add(std::vector<PatchBlock<REAL>> const &blocks, int fir
 }
 
 template <typename REAL>
-void FacePatches<REAL>::addChild(ChildPatches<REAL> const &child, int numControlPoints) {
-    int const numPoints = int(child.GetSources().size());
-    add(child.GetBlocks(), numControlPoints + _numPoints, numPoints);
-    _numPoints += numPoints;
+template <typename GET>
+void FacePatches<REAL>::addChild(ChildPatches<REAL> const &child, GET const &getSource) {
+    add(child.GetBlocks(), int(child.GetSources().size()));
+    for (int const source : child.GetSources()) {
+        _sources.push_back(getSource(source));
+    }
 }
 
 template <typename REAL>
-void FacePatches<REAL>::MakePoints(BaseType const &type, int level, REAL const *control, int size,
+void FacePatches<REAL>::MakePoints(BaseType const &type, REAL const *control, int size,
                                    std::ptrdiff_t stride, REAL *points) const {
     static thread_local PointMaker<REAL> maker;
     maker.Init(size, stride, points);
     if (PlainFaceType const *const plain = type.GetPlain()) {
-        maker.MakeOfRings(*plain, level, control);
+        maker.MakeOfRings(*plain, _sources, control);
     } else {
-        maker.MakeOfSteps(*type, level, control);
+        maker.MakeOfSteps(
+            *type, _sources.data(), [&](std::size_t child) { return getPart(child).numPoints; },
+            control);
     }
 }
 
@@ -757,9 +770,7 @@ auto FacePatches<REAL>::findBlock(int level, int patch) const
     }
     int const levels = 2 * (level - 1);
     int const behindFirst = patch - _numInFirst;
-    std::size_t const number = 1 + std::size_t(behindFirst >> levels);
-    Part const &part =
-        number < _parts.size() ? _parts[number] : _otherParts[number - _parts.size()];
+    Part const &part = getPart(1 + std::size_t(behindFirst >> levels));
     return {&part, part.blocks + (behindFirst & ((1 << levels) - 1))};
 }
 

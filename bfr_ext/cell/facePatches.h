@@ -57,19 +57,20 @@ public:
     /// Those of a type, made on demand.
     static FacePatches const &Get(BaseType const &type, int level);
 
-    std::size_t GetHeapSize() const { return GetHeapSizes(_ofLattice, _otherParts); }
-    /// Points that the patches need besides the control points.
-    int GetNumPoints() const { return _numPoints; }
+    std::size_t GetHeapSize() const { return GetHeapSizes(_ofLattice, _otherParts, _sources); }
+    /// Points that the patches are sums of; 0: of the control points.
+    int GetNumPoints() const { return int(_sources.size()); }
     /// \brief Makes these, outside of lattices, from the control points, of \p size numbers each, from one to the next by
     /// \p stride.
     ///
-    /// \param level  that of the patches, here and below
-    void MakePoints(BaseType const &type, int level, REAL const *control, int size,
-                    std::ptrdiff_t stride, REAL *points) const;
+    /// \param type  that of the constructor
+    void MakePoints(BaseType const &type, REAL const *control, int size, std::ptrdiff_t stride,
+                    REAL *points) const;
     /// Evaluates the patch of a place: the point, and derivatives by u and v as far as \p numDerivatives asks:
     /// 0, 1 or 2.
     ///
-    /// \param points   the control points, and those of MakePoints() behind them
+    /// \param level    that of the patches
+    /// \param points   those of MakePoints() or, in lattices, the control points
     /// \param results  the point; by u, by v; by u twice, by u and v, by v twice
     void Evaluate(Bfr::Parameterization const &parameterization, FaceShape shape, int level,
                   Pair const &uv, int numDerivatives, REAL const *points, int size,
@@ -85,8 +86,13 @@ private:
 
     FacePatches(BaseType const &type, int level);
 
-    void add(std::vector<PatchBlock<REAL>> const &blocks, int firstPoint, int numPoints);
-    void addChild(ChildPatches<REAL> const &child, int numControlPoints);
+    void add(std::vector<PatchBlock<REAL>> const &blocks, int numPoints);
+    // getSource: which point one of the child's is.
+    template <typename GET>
+    void addChild(ChildPatches<REAL> const &child, GET const &getSource);
+    Part const &getPart(std::size_t number) const {
+        return number < _parts.size() ? _parts[number] : _otherParts[number - _parts.size()];
+    }
     // The part that has a patch, and the patch there.
     std::pair<Part const *, PatchBlock<REAL> const *> findBlock(int level, int patch) const;
 
@@ -95,7 +101,8 @@ private:
     int _numParts = 0;
     std::array<Part, 5> _parts; // of a face of up to four sides all
     std::vector<Part> _otherParts;
-    int _numPoints = 0;
+    std::vector<int>
+        _sources; // by point: which of those of all rings, or row of the step of its child
     PatchRows<REAL> _ofLattice;
 };
 

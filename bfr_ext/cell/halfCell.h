@@ -24,6 +24,22 @@ inline void Multiply(Pair const (&a)[2], Pair const (&b)[2], Pair (&result)[2]) 
     std::copy_n(rows, 2, result);
 }
 
+/// \brief Turns derivatives by two coordinates into those by two others, number by number; in place, or not.
+///
+/// \param toCoords  by coordinate, the derivatives of it by the two others
+template <typename FROM, typename REAL>
+void TurnDerivatives(Pair const (&toCoords)[2], std::size_t size, FROM const *byFirst,
+                     FROM const *bySecond, REAL *du, REAL *dv) {
+    FROM const u[2] = {FROM(toCoords[0][0]), FROM(toCoords[1][0])};
+    FROM const v[2] = {FROM(toCoords[0][1]), FROM(toCoords[1][1])};
+    for (std::size_t k = 0; k < size; ++k) {
+        FROM const first = byFirst[k];
+        FROM const second = bySecond[k];
+        du[k] = REAL(u[0] * first + u[1] * second);
+        dv[k] = REAL(v[0] * first + v[1] * second);
+    }
+}
+
 /// \brief Map of coordinates in one cell to those in another: linear, and a shift.
 struct CellMap {
     Pair Apply(Pair const &p) const {
@@ -31,14 +47,10 @@ struct CellMap {
                 shift[1] + (rows[1][0] * p[0] + rows[1][1] * p[1])};
     }
 
-    /// The derivatives by coordinate \p k of the one cell, from those by both of the other.
-    std::vector<double> GetDerivatives(std::vector<double> const (&byOther)[2],
-                                       std::size_t k) const {
-        std::vector<double> result(byOther[0].size());
-        for (std::size_t i = 0; i < result.size(); ++i) {
-            result[i] = rows[0][k] * byOther[0][i] + rows[1][k] * byOther[1][i];
-        }
-        return result;
+    /// Turns derivatives by the coordinates of the other cell into those by the coordinates of the one.
+    void TurnDerivatives(std::vector<double> (&by)[2]) const {
+        internal::TurnDerivatives(rows, by[0].size(), by[0].data(), by[1].data(), by[0].data(),
+                                  by[1].data());
     }
 
     Pair rows[2];
@@ -108,6 +120,12 @@ struct CellOutline {
     }
     /// A whole cell.
     static CellOutline MakeWhole(Number scaleOfCell) { return {true, 0, scaleOfCell, {}}; }
+    /// A cell in its own coordinates: a whole one, or of size 0 a half cell.
+    static CellOutline MakeRoot(FaceShape shape) {
+        constexpr auto &kCorners = HalfCell::kCorners;
+        return shape.size > 0 ? MakeWhole(1)
+                              : MakeHalf(0, {kCorners[0], kCorners[1], kCorners[2], kCorners[3]});
+    }
 
     /// How many children it has.
     int GetNumChildren(FaceShape face) const { return isWhole ? face.GetNumSectors() + 1 : 4; }

@@ -2,7 +2,6 @@
 #ifndef OPENSUBDIVHEX_BFR_EXT_CELL_KEPT_FACES_H
 #define OPENSUBDIVHEX_BFR_EXT_CELL_KEPT_FACES_H
 
-#include "byteBlocks.h"
 #include "memoryCount.h"
 
 #include <opensubdiv/far/types.h>
@@ -11,6 +10,7 @@
 #include <atomic>
 #include <cstddef>
 #include <memory>
+#include <memory_resource>
 #include <mutex>
 #include <new>
 #include <type_traits>
@@ -120,11 +120,11 @@ public:
         }
         std::size_t const count = std::size_t(own.numPoints) + 2 * std::size_t(own.size);
         std::size_t const size = Face::GetMemory(count);
-        if (!takeMemory(_blocks.GetGrowth(size))) {
+        if (!takeMemory(size)) {
             _isFull.store(true, std::memory_order_relaxed);
             return nullptr;
         }
-        std::byte *const memory = _blocks.Take(size);
+        auto *const memory = static_cast<std::byte *>(_blocks.allocate(size));
         std::copy_n(own.GetPoints(), count, reinterpret_cast<Index *>(memory + sizeof(Face)));
         Face const *const added = &Face::Make(memory, own.type, own.size, count);
         slots[face].store(added, std::memory_order_release);
@@ -174,7 +174,7 @@ private:
     std::vector<Kind> _kinds;
     std::atomic<bool> _isFull{false}; // there was no memory for more faces
     std::size_t _numBytes = 0;
-    ByteBlocks _blocks{1 << 16}; // of faces
+    std::pmr::monotonic_buffer_resource _blocks; // of faces
 };
 
 } // namespace OpenSubdivHex::BfrExt::internal

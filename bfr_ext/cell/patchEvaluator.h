@@ -2,47 +2,14 @@
 #ifndef OPENSUBDIVHEX_BFR_EXT_CELL_PATCH_EVALUATOR_H
 #define OPENSUBDIVHEX_BFR_EXT_CELL_PATCH_EVALUATOR_H
 
-#include "bfrPlace.h"
 #include "cellPlan.h"
+#include "placeSource.h"
 #include "plainFace.h"
 
-#include <array>
 #include <deque>
 #include <vector>
 
 namespace OpenSubdivHex::BfrExt::internal {
-
-/// \brief What the places of a cell are sums of: the points of its type or, in a child of a plain face, points of rings.
-template <typename REAL>
-struct PlaceSource {
-    /// \brief One matrix for points, or two for derivatives.
-    ///
-    /// They lie in an array: a look-up reads fewer lines of the cache than with a vector.
-    struct Matrices {
-        std::size_t GetHeapSize() const { return internal::GetHeapSize(matrices); }
-
-        std::array<PlaceMatrix<REAL>, 2> matrices;
-        std::size_t count;
-    };
-
-    /// Where matrices of the sources are kept.
-    PatternTable &GetPatterns() const {
-        return ringCell ? ringCell->GetPatterns() : type.GetPatterns();
-    }
-    /// Makes matrices with a row for each place: one for the points, or two for the derivatives by u and v.
-    Matrices MakeMatrices(std::vector<BfrPlace> const &places, bool hasDerivatives) const;
-    /// Evaluates the places of matrices, each of which writes results of its own.
-    ///
-    /// \param runs  which places; null: all
-    void Evaluate(Matrices const &matrices, std::size_t size, REAL *const *results,
-                  std::ptrdiff_t resultStride, std::vector<PlaceRun> const *runs) const;
-
-    CellType const &type;
-    RingCell const *ringCell; ///< null: the points of the type
-    REAL const *points;
-    std::ptrdiff_t stride;
-    int const *indices; ///< by column; null: all in turn
-};
 
 /// \brief Evaluates the inside of base faces: their points are refined to those of leaves, whose places
 /// are summed up by the matrices of their types.
@@ -71,22 +38,23 @@ private:
     void evaluateLeaf(PlaceSource<REAL> const &source, CellPlan::Node const &leaf);
     void turnDerivatives(CellPlan::Node const &leaf) const;
     void evaluateCorners(CellType const &type, CellPlan::Node const &cell, REAL const *points);
-    void evaluateCorner(PlaceMatrix<REAL> const &derivatives, CellPlan::CornerPlace const &corner,
-                        REAL const *points);
+    void evaluateCorner(PlaceSource<REAL> const &source, PlaceMatrix<REAL> const &derivatives,
+                        CellPlan::CornerPlace const &corner);
+    void writeDerivatives(CellPlan::CornerPlace const &corner);
     std::vector<REAL> &getPoints(std::size_t place, std::size_t numPoints);
 
     std::size_t _size = 0; // of a point
     std::size_t _paddedSize = 0;
     std::deque<std::vector<REAL>> _points; // by depth, of a cell and of its children
     std::vector<int> _indices;
-    std::vector<REAL> _along; // derivatives at a corner, by two coordinates
+    std::vector<REAL> _derivatives; // at a corner, by its two coordinates
     bool _hasDerivatives = false;
     REAL *_results[2] = {}; // points, or derivatives
     std::ptrdiff_t _resultStride = 0;
 };
 
-extern template struct PlaceSource<float>;
-extern template struct PlaceSource<double>;
+extern template class PatchEvaluator<float>;
+extern template class PatchEvaluator<double>;
 
 } // namespace OpenSubdivHex::BfrExt::internal
 

@@ -62,21 +62,6 @@ struct PatchSums {
     REAL *const *results;  ///< in the order of FacePatches::Evaluate()
 };
 
-/// Sums up points by what the machine has; the same bits for any size and stride of points.
-void SumUpPatch(PatchSums<float> const &sums);
-/// \copydoc SumUpPatch(PatchSums<float> const &)
-void SumUpPatch(PatchSums<double> const &sums);
-
-/// @name The same with some instructions, which the machine must have
-/// @{
-void SumUpPatchPortable(PatchSums<float> const &sums);
-void SumUpPatchPortable(PatchSums<double> const &sums);
-void SumUpPatchAvx2(PatchSums<float> const &sums);
-void SumUpPatchAvx2(PatchSums<double> const &sums);
-void SumUpPatchAvx512(PatchSums<float> const &sums);
-void SumUpPatchAvx512(PatchSums<double> const &sums);
-/// @}
-
 } // namespace OpenSubdivHex::BfrExt::internal
 
 #endif

@@ -1,75 +1,46 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "placeKernel.h"
 
-#include "patchSums.h"
-
 namespace OpenSubdivHex::BfrExt::internal {
 
 namespace {
 
 template <typename REAL>
-using Kernel = void (*)(PlaceMatrix<REAL> const &, PlaceSums<REAL> const &);
-
-template <typename REAL>
-using PatchKernel = void (*)(PatchSums<REAL> const &);
-
-#ifdef OPENSUBDIVHEX_HAS_X86_KERNELS
-bool hasAvx2() {
-    __builtin_cpu_init();
-    return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
-}
-
-bool hasAvx512() {
-    return hasAvx2() && __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl");
-}
-#endif
-
-template <typename REAL>
-Kernel<REAL> chooseKernel() {
-#ifdef OPENSUBDIVHEX_HAS_X86_KERNELS
-    if (hasAvx512()) {
-        return SumUpPlacesAvx512;
-    }
-    if (hasAvx2()) {
-        return SumUpPlacesAvx2;
-    }
-#endif
-    return SumUpPlacesPortable;
-}
-
-template <typename REAL>
-PatchKernel<REAL> choosePatchKernel() {
-#ifdef OPENSUBDIVHEX_HAS_X86_KERNELS
-    if (hasAvx512()) {
-        return SumUpPatchAvx512;
-    }
-    if (hasAvx2()) {
-        return SumUpPatchAvx2;
-    }
-#endif
-    return SumUpPatchPortable;
+SumKernels<REAL> const &getWidestKernels() {
+    static SumKernels<REAL> const kKernels = FindKernels<REAL>().back();
+    return kKernels;
 }
 
 } // namespace
 
+template <typename REAL>
+std::vector<SumKernels<REAL>> FindKernels() {
+    std::vector<SumKernels<REAL>> kernels = {GetPortableKernels<REAL>()};
+#ifdef OPENSUBDIVHEX_HAS_X86_KERNELS
+    __builtin_cpu_init();
+    if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) {
+        kernels.push_back(GetAvx2Kernels<REAL>());
+        if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl")) {
+            kernels.push_back(GetAvx512Kernels<REAL>());
+        }
+    }
+#endif
+    return kernels;
+}
+
+template std::vector<SumKernels<float>> FindKernels();
+template std::vector<SumKernels<double>> FindKernels();
+
 void SumUpPlaces(PlaceMatrix<float> const &matrix, PlaceSums<float> const &sums) {
-    static Kernel<float> const kKernel = chooseKernel<float>();
-    kKernel(matrix, sums);
+    getWidestKernels<float>().sumUpPlaces(matrix, sums);
 }
 
 void SumUpPlaces(PlaceMatrix<double> const &matrix, PlaceSums<double> const &sums) {
-    static Kernel<double> const kKernel = chooseKernel<double>();
-    kKernel(matrix, sums);
+    getWidestKernels<double>().sumUpPlaces(matrix, sums);
 }
 
-void SumUpPatch(PatchSums<float> const &sums) {
-    static PatchKernel<float> const kKernel = choosePatchKernel<float>();
-    kKernel(sums);
-}
+void SumUpPatch(PatchSums<float> const &sums) { getWidestKernels<float>().sumUpPatch(sums); }
 
-void SumUpPatch(PatchSums<double> const &sums) {
-    static PatchKernel<double> const kKernel = choosePatchKernel<double>();
-    kKernel(sums);
-}
+void SumUpPatch(PatchSums<double> const &sums) { getWidestKernels<double>().sumUpPatch(sums); }
 
 } // namespace OpenSubdivHex::BfrExt::internal

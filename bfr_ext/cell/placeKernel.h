@@ -3,6 +3,7 @@
 #define OPENSUBDIVHEX_BFR_EXT_CELL_PLACE_KERNEL_H
 
 #include "memoryCount.h"
+#include "patchSums.h"
 
 #include <algorithm>
 #include <cstddef>
@@ -103,19 +104,34 @@ struct PlaceSums {
     std::size_t numRuns = 0;
 };
 
-/// Forms the sums with the widest registers that the machine has.
-void SumUpPlaces(PlaceMatrix<float> const &matrix, PlaceSums<float> const &sums);
-/// \copydoc SumUpPlaces(PlaceMatrix<float> const &, PlaceSums<float> const &)
-void SumUpPlaces(PlaceMatrix<double> const &matrix, PlaceSums<double> const &sums);
+/// The sums that a set of instructions forms.
+template <typename REAL>
+struct SumKernels {
+    void (*sumUpPlaces)(PlaceMatrix<REAL> const &matrix, PlaceSums<REAL> const &sums);
+    /// The same bits for any size and stride of points.
+    void (*sumUpPatch)(PatchSums<REAL> const &sums);
+};
 
-/// @name The same with some instructions, which the machine must have
+/// @name Those of some instructions, which the machine must have
 /// @{
-void SumUpPlacesPortable(PlaceMatrix<float> const &matrix, PlaceSums<float> const &sums);
-void SumUpPlacesPortable(PlaceMatrix<double> const &matrix, PlaceSums<double> const &sums);
-void SumUpPlacesAvx2(PlaceMatrix<float> const &matrix, PlaceSums<float> const &sums);
-void SumUpPlacesAvx2(PlaceMatrix<double> const &matrix, PlaceSums<double> const &sums);
-void SumUpPlacesAvx512(PlaceMatrix<float> const &matrix, PlaceSums<float> const &sums);
-void SumUpPlacesAvx512(PlaceMatrix<double> const &matrix, PlaceSums<double> const &sums);
+template <typename REAL>
+SumKernels<REAL> GetPortableKernels();
+template <typename REAL>
+SumKernels<REAL> GetAvx2Kernels();
+template <typename REAL>
+SumKernels<REAL> GetAvx512Kernels();
+/// @}
+
+/// Those that the machine has, the portable ones first and the widest ones last.
+template <typename REAL>
+std::vector<SumKernels<REAL>> FindKernels();
+
+/// @name Sums by the widest ones
+/// @{
+void SumUpPlaces(PlaceMatrix<float> const &matrix, PlaceSums<float> const &sums);
+void SumUpPlaces(PlaceMatrix<double> const &matrix, PlaceSums<double> const &sums);
+void SumUpPatch(PatchSums<float> const &sums);
+void SumUpPatch(PatchSums<double> const &sums);
 /// @}
 
 } // namespace OpenSubdivHex::BfrExt::internal

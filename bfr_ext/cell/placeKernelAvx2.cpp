@@ -4,16 +4,12 @@
 
 namespace OpenSubdivHex::BfrExt::internal {
 
-void SumUpPlacesAvx2(PlaceMatrix<float> const &matrix, PlaceSums<float> const &sums) {
-    sumUpPlaces<32>(matrix, sums);
+template <typename REAL>
+SumKernels<REAL> GetAvx2Kernels() {
+    return {sumUpPlaces<32, REAL>, sumUpPatch<REAL>};
 }
 
-void SumUpPlacesAvx2(PlaceMatrix<double> const &matrix, PlaceSums<double> const &sums) {
-    sumUpPlaces<32>(matrix, sums);
-}
-
-void SumUpPatchAvx2(PatchSums<float> const &sums) { sumUpPatch(sums); }
-
-void SumUpPatchAvx2(PatchSums<double> const &sums) { sumUpPatch(sums); }
+template SumKernels<float> GetAvx2Kernels();
+template SumKernels<double> GetAvx2Kernels();
 
 } // namespace OpenSubdivHex::BfrExt::internal

@@ -4,16 +4,12 @@
 
 namespace OpenSubdivHex::BfrExt::internal {
 
-void SumUpPlacesAvx512(PlaceMatrix<float> const &matrix, PlaceSums<float> const &sums) {
-    sumUpPlaces<64>(matrix, sums);
+template <typename REAL>
+SumKernels<REAL> GetAvx512Kernels() {
+    return {sumUpPlaces<64, REAL>, sumUpPatch<REAL>};
 }
 
-void SumUpPlacesAvx512(PlaceMatrix<double> const &matrix, PlaceSums<double> const &sums) {
-    sumUpPlaces<64>(matrix, sums);
-}
-
-void SumUpPatchAvx512(PatchSums<float> const &sums) { sumUpPatch(sums); }
-
-void SumUpPatchAvx512(PatchSums<double> const &sums) { sumUpPatch(sums); }
+template SumKernels<float> GetAvx512Kernels();
+template SumKernels<double> GetAvx512Kernels();
 
 } // namespace OpenSubdivHex::BfrExt::internal

@@ -4,16 +4,12 @@
 
 namespace OpenSubdivHex::BfrExt::internal {
 
-void SumUpPlacesPortable(PlaceMatrix<float> const &matrix, PlaceSums<float> const &sums) {
-    sumUpPlaces<16>(matrix, sums);
+template <typename REAL>
+SumKernels<REAL> GetPortableKernels() {
+    return {sumUpPlaces<16, REAL>, sumUpPatch<REAL>};
 }
 
-void SumUpPlacesPortable(PlaceMatrix<double> const &matrix, PlaceSums<double> const &sums) {
-    sumUpPlaces<16>(matrix, sums);
-}
-
-void SumUpPatchPortable(PatchSums<float> const &sums) { sumUpPatch(sums); }
-
-void SumUpPatchPortable(PatchSums<double> const &sums) { sumUpPatch(sums); }
+template SumKernels<float> GetPortableKernels();
+template SumKernels<double> GetPortableKernels();
 
 } // namespace OpenSubdivHex::BfrExt::internal

@@ -79,7 +79,7 @@ Pair RateEvaluator<REAL>::getInnerCoord(std::size_t place) {
 template <typename REAL>
 void RateEvaluator<REAL>::Evaluate(CellType const &type, REAL const *points,
                                    std::ptrdiff_t stride) {
-    Source const source = {{type, nullptr, points, stride, nullptr}, 0};
+    Source const source = {{&type, nullptr, points, stride, nullptr}, 0};
     forEachEdge([&](int edge, int rate, int first) {
         evaluateBorder(edge, rate, first);
         if (_results[1]) {
@@ -93,15 +93,8 @@ template <typename REAL>
 void RateEvaluator<REAL>::Evaluate(PlainFaceType const &type) {
     // Their memory is kept for the next face.
     static thread_local std::vector<int> indices;
-    FaceRings const &face = type.GetRings();
-    RingValues<REAL> &values = _border.GetRingValues();
     auto const getSource = [&](std::size_t child) -> Source {
-        RingCell const &cell = face.GetChild(child);
-        REAL const *const points = values.GetPoints();
-        values.FindChildIndices(face, child, indices);
-        return {
-            {cell.GetType(), &cell, points, std::ptrdiff_t(values.GetPaddedSize()), indices.data()},
-            child};
+        return {FindChildSource(type.GetRings(), child, _border.GetRingValues(), indices), child};
     };
     forEachEdge([&](int edge, int rate, int first) {
         evaluateBorder(edge, rate, first);
@@ -155,7 +148,7 @@ int RateEvaluator<REAL>::getFaceKey() const {
 template <typename REAL>
 FaceShape RateEvaluator<REAL>::getShape(Source const &source) const {
     return source.places.ringCell ? FaceShape(_tessellation.GetFaceSize())
-                                  : source.places.type.GetShape();
+                                  : source.places.type->GetShape();
 }
 
 template <typename REAL>

@@ -209,14 +209,15 @@ public:
         : _cell(cell), _cells(cells), _numEdges(cell.GetNumCorners()),
           _layouts(FindRingLayouts(cell.patch, cell.locals, cells.GetMasks().HaveSecondStep())) {}
 
-    RingFace Make() {
-        RingFace face = {&findChild(CellKind::Whole, findKey(_layouts), 0, 0), {}, {}};
+    std::unique_ptr<RingFace const> Make() {
+        auto face = std::make_unique<RingFace>(_cells.GetMemory());
+        face->whole = &findChild(CellKind::Whole, findKey(_layouts), 0, 0);
         for (int i = 0; i < _numEdges; ++i) {
-            face.edges.push_back(makeEdge(i));
-            face.vVertices.push_back(makeVVertices(i));
+            face->edges.push_back(makeEdge(i));
+            face->vVertices.push_back(makeVVertices(i));
         }
-        face.edges.shrink_to_fit();
-        face.vVertices.shrink_to_fit();
+        face->edges.shrink_to_fit();
+        face->vVertices.shrink_to_fit();
         return face;
     }
 

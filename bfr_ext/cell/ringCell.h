@@ -130,14 +130,18 @@ struct RingEdge {
     RingCell const *longEdges[2];
 };
 
-/// Product of the first step of a plain base face.
+/// Product of the first step of a plain base face.  Far fewer than types of base faces differ.
 struct RingFace {
+    explicit RingFace(MemoryCount &memory) : patterns(memory) {}
+
     std::size_t GetHeapSize() const { return GetHeapSizes(edges, vVertices); }
 
-    RingCell const *whole;
+    RingCell const *whole = nullptr;
     std::vector<RingEdge> edges;
     /// By vertex, and by how many of its faces lie before this one.
     std::vector<std::vector<RingCell const *>> vVertices;
+    /// What is made of all of these cells on demand.
+    mutable PatternTable patterns;
 };
 
 /// The cells of plain base faces with some rules.  Any number of threads may use it.
@@ -167,7 +171,7 @@ public:
     /// Finds what make() gave of a face whose vertices have rings that are told by \p key.
     template <typename MAKE>
     RingFace const &FindFace(Key const &key, MAKE const &make) {
-        return find<RingFace>(_faces, 0, key, make);
+        return *find<std::unique_ptr<RingFace const>>(_faces, 0, key, make);
     }
 
     /// \brief Returns the first result of make() for a kind of items in the lattice of a size of faces: mostly all
@@ -218,8 +222,10 @@ public:
     FaceRings(FarExt::internal::CellPatch const &cell, RingCells &cells);
 
     VertexRings const &GetRings() const { return _rings; }
-    /// What is made on demand: the edges and vertices that are in a lattice, and patches.
+    /// What is made on demand: the edges and vertices that are in a lattice.
     PatternTable &GetPatterns() const { return _patterns; }
+    /// The same of all faces with these children: patches.
+    PatternTable &GetPatternsOfChildren() const { return _cells->patterns; }
     std::size_t GetHeapSize() const { return internal::GetHeapSize(_rings); }
     /// Whether a vertex and its neighbours are in a regular lattice, or both vertices of an edge.
     bool IsVertexInLattice(int vert) const {

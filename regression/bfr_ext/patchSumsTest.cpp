@@ -179,22 +179,14 @@ void expectSums(KERNEL const &kernel, double tolerance) {
 
 template <int NUM_DERIVATIVES, typename REAL>
 void expectSumsOfKernels(double tolerance) {
-    using namespace BfrExt::internal;
+    auto const kernels = BfrExt::internal::FindKernels<REAL>();
+    for (std::size_t i = 0; i < kernels.size(); ++i) {
+        SCOPED_TRACE(testing::Message() << "kernel " << i);
+        expectSums<NUM_DERIVATIVES, REAL>(kernels[i].sumUpPatch, tolerance);
+    }
+    SCOPED_TRACE("of the machine");
     using Kernel = void (*)(PatchSums<REAL> const &);
-    {
-        SCOPED_TRACE("portable");
-        expectSums<NUM_DERIVATIVES, REAL>(Kernel(SumUpPatchPortable), tolerance);
-    }
-#if defined(__x86_64__) && defined(__GNUC__)
-    if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) {
-        SCOPED_TRACE("AVX2");
-        expectSums<NUM_DERIVATIVES, REAL>(Kernel(SumUpPatchAvx2), tolerance);
-    }
-#endif
-    {
-        SCOPED_TRACE("of the machine");
-        expectSums<NUM_DERIVATIVES, REAL>(Kernel(SumUpPatch), tolerance);
-    }
+    expectSums<NUM_DERIVATIVES, REAL>(Kernel(BfrExt::internal::SumUpPatch), tolerance);
 }
 
 } // namespace

@@ -112,35 +112,13 @@ private:
     std::vector<PlaceRun> _runs;
 };
 
-/// A function of a set of instructions.
-template <typename REAL>
-struct Kernel {
-    typename Sums<REAL>::Function form;
-    bool isFused;
-};
-
-/// The kernels that the machine can run, the widest ones last.
-template <typename REAL>
-std::vector<Kernel<REAL>> getKernels() {
-    using namespace BfrExt::internal;
-    std::vector<Kernel<REAL>> kernels = {{SumUpPlacesPortable, false}};
-#if defined(__x86_64__) && defined(__GNUC__)
-    if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) {
-        kernels.push_back({SumUpPlacesAvx2, true});
-    }
-    if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl")) {
-        kernels.push_back({SumUpPlacesAvx512, true});
-    }
-#endif
-    kernels.push_back({SumUpPlaces, kernels.back().isFused});
-    return kernels;
-}
-
 template <typename REAL>
 void expectSameBits(Sums<REAL> const &sums) {
-    for (Kernel<REAL> const &kernel : getKernels<REAL>()) {
-        ASSERT_EQ(sums.Form(kernel.form), sums.FormLiterally(kernel.isFused));
+    auto const kernels = BfrExt::internal::FindKernels<REAL>();
+    for (std::size_t i = 0; i < kernels.size(); ++i) {
+        ASSERT_EQ(sums.Form(kernels[i].sumUpPlaces), sums.FormLiterally(i > 0)) << "kernel " << i;
     }
+    ASSERT_EQ(sums.Form(BfrExt::internal::SumUpPlaces), sums.FormLiterally(kernels.size() > 1));
 }
 
 template <typename REAL>

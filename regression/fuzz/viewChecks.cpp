@@ -190,23 +190,6 @@ void compareForests(CellForest const &kept, CellForest const &found, int numEdge
     }
 }
 
-/// The trees of single faces are those of the forest.
-void checkTrees(MeshSurfaces<double> const &mesh, View const &view, CellForest const &forest,
-                Dice &dice) {
-    for (int face = 0; face < forest.GetNumFaces(); ++face) {
-        if (!mesh.Has(face)) {
-            continue;
-        }
-        std::vector<CellVisibility> visibilities;
-        CellTree const tree = view.MakeTree(mesh.surfaces[std::size_t(face)],
-                                            mesh.GetControlPoints(face), 3, nullptr, &visibilities);
-        if (!haveSameCells(tree, forest.GetTree(face))) {
-            Fail("a view has another tree of face ", face, " alone than in a forest");
-        }
-        TreeCheck(mesh, view, face, dice).Check(tree, visibilities);
-    }
-}
-
 /// Frames whose points move, with numbers that are none among them.
 void checkFrames(MeshSurfaces<double> const &mesh, Dice &dice) {
     ViewBounds::Options boundsOptions;
@@ -245,8 +228,15 @@ void CheckViews(MeshSurfaces<double> const &mesh, Dice &dice) {
         if (!view.IsValid()) {
             Fail("a view is not valid");
         }
-        auto const forest = view.MakeForest<double>(*mesh.factory, mesh.points.data(), 3);
-        checkTrees(mesh, view, forest, dice);
+        View::Counts counts;
+        auto const forest =
+            view.MakeForest<double>(*mesh.factory, mesh.points.data(), 3, nullptr, &counts);
+        for (int face = 0; face < forest.GetNumFaces(); ++face) {
+            if (mesh.Has(face)) {
+                TreeCheck(mesh, view, face, dice)
+                    .Check(forest.GetTree(face), counts.visibilities[std::size_t(face)]);
+            }
+        }
         if (i == 0) {
             CheckForest(mesh, forest, dice);
         }
