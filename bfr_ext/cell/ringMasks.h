@@ -15,7 +15,7 @@ namespace OpenSubdivHex::BfrExt::internal {
 /// Few differ from each other, and are kept.  Any number of threads may use them.
 class RingMasks {
 public:
-    /// What masks make, by the step: points of VertexRings and of InnerRings.
+    /// The points that a mask makes, of VertexRings or, behind these, of InnerRings.
     enum class Of {
         FirstVertex,
         FirstFace,

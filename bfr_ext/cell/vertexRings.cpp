@@ -46,7 +46,7 @@ public:
         std::vector<Found> vertices;
         std::vector<Found> neighbors;
         std::vector<int> key;
-        std::vector<Number> program; // and behind it what others had
+        std::vector<Number> program; // and what longer ones before had behind it
         std::vector<int> ring;
         std::vector<int> sizes;
         std::vector<Number> around; // the points around a neighbor, and one whose numbers are 0

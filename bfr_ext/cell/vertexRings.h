@@ -70,7 +70,8 @@ public:
 
 private:
     using Number = std::uint16_t;
-    // These are the places in headers; masks are numbers of _masks.
+
+    // Places in the headers of the program.  A mask is its number among those of the face.
     enum RingHeader : std::uint8_t { kVertex, kVertexMask, kRingHeaderSize };
     enum FaceHeader : std::uint8_t {
         kFaceSize,
@@ -86,13 +87,13 @@ private:
     static constexpr std::size_t kLastNumber = std::numeric_limits<Number>::max();
     static constexpr std::size_t kNumOthers = Ring::GetNumOthers(RingStep::First);
 
-    // Weights of a vertex and of its F-vertices; or those of an F-vertex, from its own corner on; or those of the V-vertex
-    // of a neighbour, and by *run* of points that have one weight.
+    // The mask of a vertex: its own weight, and that of F-vertices; of an F-vertex: the weights of the face's vertices from
+    // its own on; or of a neighbour: its own weight, and those of *runs*, the points of which have one weight.
     struct Mask {
         std::size_t GetHeapSize() const { return GetHeapSizes(weights, numSteps, places); }
 
         RingMasks::Weights weights;
-        // Of a neighbour, by run: how many times kRunStep points, and which of those around the neighbour.
+        // Of a neighbour, by run: how many times kRunStep points it has, and which they are of those around the neighbour.
         std::vector<Number> numSteps;
         std::vector<Number> places;
     };
