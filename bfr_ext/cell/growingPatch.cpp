@@ -8,7 +8,7 @@ namespace OpenSubdivHex::BfrExt::internal {
 
 void GrowingPatch::Start(int size, bool keepsFaces) {
     for (int vert = 0; vert < size; ++vert) {
-        _verts[vert] = {(vert + size - 1) % size, (vert + 1) % size, 1, 1, vert, kNone};
+        _verts[vert] = {(vert + size - 1) % size, (vert + 1) % size, 1, 1, vert, kNone, vert};
         _inner[vert] = vert;
     }
     _size = _numInner = _numMade = size;
@@ -16,6 +16,8 @@ void GrowingPatch::Start(int size, bool keepsFaces) {
     _faces[0] = std::uint8_t(_size);
     std::iota(_faces + 1, _faces + 1 + _size, std::uint8_t(0));
     _numFaceBytes = 1 + _size;
+    std::fill_n(_others, _size, std::int16_t(kNone));
+    _numCorners = _size;
 }
 
 bool GrowingPatch::Add(int inner, int numFaces, std::uint8_t const *sizes) {
@@ -34,6 +36,9 @@ bool GrowingPatch::Add(int inner, int numFaces, std::uint8_t const *sizes) {
         return false;
     }
     if (numNew == 0) {
+        if (_keepsFaces) {
+            joinEdges(_verts[before].corner, center.corner);
+        }
         return join(before, behind);
     }
     int last = before;
@@ -85,7 +90,7 @@ bool GrowingPatch::addVertex(int last, Point const &point) {
     if (_numMade == kMaxVerts) {
         return false;
     }
-    _verts[_numMade] = {kNone, kNone, 1, 0, kNone, kNone};
+    _verts[_numMade] = {kNone, kNone, 1, 0, kNone, kNone, kNone};
     _points[_numMade] = point;
     link(last, _numMade++);
     return true;
@@ -105,25 +110,39 @@ bool GrowingPatch::join(int before, int behind) {
         link(_verts[gone].before, kept);
     } else {
         link(kept, _verts[gone].behind);
+        _verts[kept].corner = _verts[gone].corner;
     }
     _verts[kept].numFaces += _verts[gone].numFaces;
     _verts[gone].same = kept;
     return true;
 }
 
-// A face at a vertex: that, the one before on the boundary, those made for it, and the one behind, if any.
+// A face at a vertex: that, the one before on the boundary, those made for it, and the one behind, if it is the last face
+// there.
 void GrowingPatch::keepFace(int vert, int last, int firstMade, int behind) {
     std::uint8_t *const face = _faces + _numFaceBytes;
     std::uint8_t *to = face + 1;
-    *to++ = std::uint8_t(vert);
-    *to++ = std::uint8_t(last);
+    int const first = _numCorners;
+    auto const add = [&](int ofFace) {
+        *to++ = std::uint8_t(ofFace);
+        _others[_numCorners++] = std::int16_t(kNone);
+    };
+    add(vert);
+    joinEdges(first, _verts[last].corner);
+    // The other edges, and that to the vertex where another face follows, are on the boundary.
+    auto const addOnBoundary = [&](int ofFace) {
+        _verts[ofFace].corner = _numCorners;
+        add(ofFace);
+    };
+    addOnBoundary(last);
     for (int made = firstMade; made < _numMade; ++made) {
-        *to++ = std::uint8_t(made);
+        addOnBoundary(made);
     }
     if (behind != kNone) {
-        *to++ = std::uint8_t(behind);
+        add(behind);
+        joinEdges(_numCorners - 1, _verts[vert].corner);
     }
-    face[0] = std::uint8_t(to - face - 1);
+    face[0] = std::uint8_t(_numCorners - first);
     _numFaceBytes = int(to - _faces);
 }
 
@@ -145,7 +164,9 @@ GrowingPatch::Run *GrowingPatch::GetRuns(Run *runs) const {
     return end;
 }
 
-void GrowingPatch::GetFaces(std::vector<int> &sizes, std::vector<int> &verts) const {
+void GrowingPatch::GetFaces(std::vector<int> &sizes, std::vector<int> &verts,
+                            std::vector<int> &others) const {
+    others.assign(_others, _others + _numCorners);
     int numbers[kMaxVerts] = {};
     int numPoints = 0;
     for (int vert = 0; vert < _numMade; ++vert) {
@@ -153,16 +174,18 @@ void GrowingPatch::GetFaces(std::vector<int> &sizes, std::vector<int> &verts) co
                         : isPoint(vert) ? _numInner + numPoints++
                                         : kNone;
     }
-    verts.reserve(std::size_t(_numFaceBytes));
-    sizes.reserve(std::size_t(_numFaceBytes) / 4);
+    verts.resize(std::size_t(_numCorners));
+    sizes.resize(std::size_t(_numFaceBytes - _numCorners));
+    int *toSize = sizes.data();
+    int *toVert = verts.data();
     for (std::uint8_t const *face = _faces; face != _faces + _numFaceBytes; face += 1 + face[0]) {
-        sizes.push_back(face[0]);
+        *toSize++ = face[0];
         for (int i = 1; i <= face[0]; ++i) {
             int vert = face[i];
             while (numbers[vert] == kNone) {
                 vert = _verts[vert].same;
             }
-            verts.push_back(numbers[vert]);
+            *toVert++ = numbers[vert];
         }
     }
 }

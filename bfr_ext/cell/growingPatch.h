@@ -46,13 +46,15 @@ public:
     /// Writes where the vertices that are not inner were met, kMaxVerts runs at most.
     /// \return  the end of what was written
     Run *GetRuns(Run *runs) const;
-    /// The sizes and the vertices of the faces; inner vertices come before others.
-    void GetFaces(std::vector<int> &sizes, std::vector<int> &verts) const;
+    /// The sizes and the vertices of the faces, inner vertices before others; and by corner, the corner across the edge
+    /// from it, or -1.
+    void GetFaces(std::vector<int> &sizes, std::vector<int> &verts, std::vector<int> &others) const;
 
 private:
     // A face makes a vertex, or is the last of an inner one, and has three more than it makes at most.
     static constexpr int kMaxFaces = 1 + kMaxInner + kMaxVerts;
     static constexpr int kMaxFaceBytes = 4 * kMaxFaces + kMaxVerts;
+    static constexpr int kMaxCorners = kMaxFaceBytes - kMaxFaces;
 
     struct Vertex {
         int before; // along the boundary
@@ -61,6 +63,7 @@ private:
         int numFacesBefore; // from where its faces begin to the boundary before
         int inner;          // its number, or kNone
         int same;           // a vertex before, which it turned out to be, or kNone
+        int corner;         // whose edge is the boundary from here on, if faces are kept
     };
     static constexpr int kNone = -1;
 
@@ -74,6 +77,10 @@ private:
     bool addVertex(int last, Point const &point);
     bool join(int before, int behind);
     void keepFace(int vert, int last, int firstMade, int behind);
+    void joinEdges(int corner, int other) {
+        _others[corner] = std::int16_t(other);
+        _others[other] = std::int16_t(corner);
+    }
 
     int _size = 0;
     int _numInner = 0;
@@ -84,6 +91,8 @@ private:
     Point _points[kMaxVerts] = {};           // by vertex
     std::uint8_t _faces[kMaxFaceBytes] = {}; // of each its size and vertices
     int _numFaceBytes = 0;
+    std::int16_t _others[kMaxCorners] = {}; // by corner, that across its edge, or kNone
+    int _numCorners = 0;
 };
 
 } // namespace OpenSubdivHex::BfrExt::internal

@@ -31,11 +31,11 @@ constexpr std::size_t kNumOuter = Ring::GetNumOthers(RingStep::First);
 // Finds the masks around vertices of a patch, which is refined where one is met for the first time.
 class InnerRings::MaskFinder {
 public:
-    MaskFinder(InnerMasks &masks, PatchCorners const &corners) : _masks(masks), _corners(corners) {}
+    MaskFinder(RingMasks &masks, PatchCorners const &corners) : _masks(masks), _corners(corners) {}
 
     // The weights of a vertex, from the corners there.
     Weights const &FindVertex(std::vector<int> const &ring) {
-        return find(Kind::Vertex, getKey(ring),
+        return find(RingMasks::Of::SecondVertex, getKey(ring),
                     [&](Refinement const &refinement, RefinementRules const &rules) {
                         return toWeights(rules.GetVertexRule(
                             refinement.GetVertexChildVertex(_corners.GetVertex(ring[0]))));
@@ -44,16 +44,17 @@ public:
     // Weights of the F-vertices of all faces around a vertex, for a vertex itself, and for those of its F-face and
     // of its two E-faces.
     Weights const &FindFVertex(std::vector<int> const &ring) {
-        return find(Kind::FVertex, getKey(ring),
+        return find(RingMasks::Of::SecondFVertex, getKey(ring),
                     [&](Refinement const &refinement, RefinementRules const &rules) {
                         return findFVertex(refinement, rules, ring[0]);
                     });
     }
     Weights const &FindFace(int size) {
-        return find(Kind::Face, {size}, [&](Refinement const &, RefinementRules const &rules) {
-            double const *const weights = rules.GetCirculantRule(size).GetRow(0);
-            return std::vector<double>(weights, weights + size);
-        });
+        return find(RingMasks::Of::SecondFace, {size},
+                    [&](Refinement const &, RefinementRules const &rules) {
+                        double const *const weights = rules.GetCirculantRule(size).GetRow(0);
+                        return std::vector<double>(weights, weights + size);
+                    });
     }
     // Weights for the E-face of the edge from a corner on; the faces beside the edge are the face of the corner and
     // the face before it around the vertex.
@@ -65,15 +66,13 @@ public:
         key.insert(key.end(), ofNeighbor.begin(), ofNeighbor.end());
         key.push_back(_corners.GetFaceSize(before));
         key.push_back(_corners.GetFaceSize(corner));
-        return find(Kind::Hexagon, key,
+        return find(RingMasks::Of::SecondHexagon, key,
                     [&](Refinement const &refinement, RefinementRules const &rules) {
                         return findHexagon(corner, refinement, rules);
                     });
     }
 
 private:
-    enum class Kind { Vertex, FVertex, Face, Hexagon };
-
     // Key of the masks around a vertex.
     std::vector<int> getKey(std::vector<int> const &ring) const {
         int const numFaces = int(ring.size());
@@ -83,8 +82,8 @@ private:
     }
 
     template <typename MAKE>
-    Weights const &find(Kind kind, std::vector<int> const &key, MAKE const &make) {
-        return _masks._weights.Get<Weights>(int(kind), key.data(), key.data() + key.size(), [&] {
+    Weights const &find(RingMasks::Of of, std::vector<int> const &key, MAKE const &make) {
+        return _masks.Find<Weights>(of, key, [&] {
             std::vector<double> weights;
             CellRules const &ofCells = _masks.GetRules();
             FarExt::internal::UseNextMasks(
@@ -134,12 +133,12 @@ private:
         return weights;
     }
 
-    InnerMasks &_masks;
+    RingMasks &_masks;
     PatchCorners const &_corners;
 };
 
 bool InnerRings::Init(PatchCorners const &ofPatch, std::vector<int> const &corners,
-                      InnerMasks &masks) {
+                      RingMasks &masks) {
     MaskFinder finder(masks, ofPatch);
     std::vector<int> ring;
     for (int const first : corners) {

@@ -2,52 +2,15 @@
 #ifndef OPENSUBDIVHEX_BFR_EXT_CELL_INNER_RINGS_H
 #define OPENSUBDIVHEX_BFR_EXT_CELL_INNER_RINGS_H
 
-#include "cellType.h"
 #include "ringLayout.h"
+#include "ringMasks.h"
 
 #include <cstddef>
-#include <utility>
 #include <vector>
 
 namespace OpenSubdivHex::BfrExt::internal {
 
 class PatchCorners;
-
-/// \brief The masks of the second step around vertices of the base mesh, which with FaceMask::Smooth depend on
-/// how many faces the ends of edges have.
-///
-/// Few differ from each other, and are kept.  Any number of threads may use them.
-class InnerMasks {
-public:
-    /// Weights in both precisions.
-    struct Weights {
-        explicit Weights(std::vector<double> weights)
-            : doubles(std::move(weights)), floats(doubles.begin(), doubles.end()) {}
-        double const *Get(double /*precision*/) const { return doubles.data(); }
-        float const *Get(float /*precision*/) const { return floats.data(); }
-        std::size_t GetHeapSize() const { return GetHeapSizes(doubles, floats); }
-
-        std::vector<double> doubles;
-        std::vector<float> floats;
-    };
-
-    InnerMasks(CellRules const &rules, MemoryCount &memory) : _rules(rules), _weights(memory) {}
-
-    CellRules const &GetRules() const { return _rules; }
-    /// \brief Whether rings have a second step, behind which cells depend on one vertex of the base mesh at most.
-    ///
-    /// Else masks depend on no neighbours, and cells are of few types behind the first step.
-    bool AreUsed() const {
-        return _rules.hexSchemeOptions.faceMask == FarExt::FaceMask::Smooth &&
-               _rules.interpolation == FarExt::Interpolation::Vertex;
-    }
-
-private:
-    friend class InnerRings;
-
-    CellRules const _rules;
-    PatternTable _weights; // by what is made, and what it depends on
-};
 
 /// \brief The second step by its masks, around vertices of the base mesh, from the points of their rings.
 ///
@@ -68,7 +31,7 @@ public:
     ///
     /// \return  false around vertices of more than kMaxFaces, whose faces make the second step by themselves;
     ///          plain base faces have none
-    bool Init(PatchCorners const &ofPatch, std::vector<int> const &corners, InnerMasks &masks);
+    bool Init(PatchCorners const &ofPatch, std::vector<int> const &corners, RingMasks &masks);
 
     /// \brief Writes the points of a ring from those of the first step.
     ///
@@ -81,7 +44,7 @@ public:
                REAL const *first, REAL *second) const;
 
 private:
-    using Weights = InnerMasks::Weights;
+    using Weights = RingMasks::Weights;
 
     class MaskFinder;
     struct Spoke {

@@ -14,26 +14,31 @@ namespace OpenSubdivHex::BfrExt::internal {
 class PatchCorners {
 public:
     explicit PatchCorners(FarExt::internal::LimitPatch const &patch) : _patch(patch) {
-        _faces.reserve(patch.faceVerts.size());
+        _corners.resize(patch.faceVerts.size());
+        Corner *corner = _corners.data();
         int first = 0;
         for (int const size : patch.faceSizes) {
-            for (int i = 0; i < size; ++i) {
-                _faces.push_back({first, size});
+            int before = first + size - 1;
+            for (int i = 0; i < size; ++i, ++corner) {
+                *corner = {first, size, patch.otherCorners[std::size_t(before)]};
+                before = first + i;
             }
             first += size;
         }
     }
 
     FarExt::internal::LimitPatch const &GetPatch() const { return _patch; }
-    int GetFaceSize(int corner) const { return _faces[std::size_t(corner)].size; }
+    int GetFaceSize(int corner) const { return _corners[std::size_t(corner)].size; }
     int GetVertex(int corner) const { return _patch.faceVerts[std::size_t(corner)]; }
     /// So many places further on in the face, at most its size.
     int GetNext(int corner, int numPlaces) const {
-        Face const &face = _faces[std::size_t(corner)];
+        Corner const &face = _corners[std::size_t(corner)];
         int const next = corner + numPlaces;
         return next < face.first + face.size ? next : next - face.size;
     }
     int GetBefore(int corner) const { return GetNext(corner, GetFaceSize(corner) - 1); }
+    /// The next corner at the vertex of one, counter-clockwise; negative where a boundary comes.
+    int GetNextAround(int corner) const { return _corners[std::size_t(corner)].nextAround; }
 
     /// Finds the corners at the vertex of one, counter-clockwise from that on.
     /// \return  false where the vertex has a boundary; then the result is of no use
@@ -42,8 +47,8 @@ public:
         int corner = first;
         do {
             ring.push_back(corner);
-            corner = _patch.otherCorners[std::size_t(GetBefore(corner))];
-            if (corner < 0 || ring.size() == _faces.size()) {
+            corner = GetNextAround(corner);
+            if (corner < 0 || ring.size() == _corners.size()) {
                 return false;
             }
         } while (corner != first);
@@ -61,13 +66,14 @@ public:
     }
 
 private:
-    struct Face {
-        int first; // corner
-        int size;
+    struct Corner {
+        int first; // of the face
+        int size;  // of the face
+        int nextAround;
     };
 
     FarExt::internal::LimitPatch const &_patch;
-    std::vector<Face> _faces; // by corner
+    std::vector<Corner> _corners;
 };
 
 } // namespace OpenSubdivHex::BfrExt::internal

@@ -72,7 +72,10 @@ static_assert(GrowingPatch::kMaxInner <= InnerRings::kMaxFaces);
 
 // If several threads do so at once, the first one makes it for all.
 FaceRings const &PlainFaceType::makeRings() const {
-    auto rings = std::make_unique<FaceRings const>(makeCell(), _types._ringCells);
+    // Its memory is kept for the next face.
+    static thread_local CellPatch cell;
+    makeCell(cell);
+    auto rings = std::make_unique<FaceRings const>(cell, _types._ringCells);
     FaceRings const *expected = nullptr;
     if (_rings.compare_exchange_strong(expected, rings.get(), std::memory_order_acq_rel)) {
         _types._types.GetMemory().Add(internal::GetHeapSize(rings));
@@ -83,23 +86,22 @@ FaceRings const &PlainFaceType::makeRings() const {
 
 // Threads that do so at once find the same.
 CellType const &PlainFaceType::make() const {
-    CellType const &type = _types._types.Find(makeCell(), _types._ringCells.GetRules());
+    CellPatch cell;
+    makeCell(cell);
+    CellType const &type = _types._types.Find(cell, _types._ringCells.GetRules());
     if (!_type.exchange(&type, std::memory_order_acq_rel)) {
         --_types._numUnmade;
     }
     return type;
 }
 
-CellPatch PlainFaceType::makeCell() const {
+void PlainFaceType::makeCell(CellPatch &cell) const {
     static thread_local GrowingPatch patch;
     PlainFaceKey const key(_key);
     patch.Start(std::uint8_t(key[0]) & ~kHasSizes, true);
     grow(key, _numVerts, patch);
-    std::vector<int> faceSizes;
-    std::vector<Far::Index> faceVerts;
-    patch.GetFaces(faceSizes, faceVerts);
-    return FarExt::internal::MakePlainBaseCell(std::move(faceSizes), std::move(faceVerts),
-                                               _numVerts, GetNumPoints());
+    patch.GetFaces(cell.patch.faceSizes, cell.patch.faceVerts, cell.patch.otherCorners);
+    FarExt::internal::FinishPlainBaseCell(GetNumPoints(), cell);
 }
 
 namespace {
@@ -179,7 +181,8 @@ CellType::BorderItem const &PlainFaceType::GetLatticeItem(int const *turns,
                                                           std::size_t item) const {
     FaceRings const &rings = GetRings();
     return CellType::FindBorderItem(rings.GetPatterns(), turns, item, [&] {
-        CellPatch const cell = makeCell();
+        CellPatch cell;
+        makeCell(cell);
         PatchCorners const corners(cell.patch);
         int const numEdges = cell.GetNumCorners();
         std::vector<CellType::BorderItem> items(2 * std::size_t(numEdges));

@@ -67,7 +67,7 @@ public:
 private:
     CellType const &make() const;
     FaceRings const &makeRings() const;
-    FarExt::internal::CellPatch makeCell() const;
+    void makeCell(FarExt::internal::CellPatch &cell) const;
     CellType::BorderItem makeLatticeItem(FarExt::internal::CellPatch const &cell,
                                          PatchCorners const &corners, int const *turns,
                                          std::size_t item) const;

@@ -59,6 +59,7 @@ RingCells::Key findKey(std::vector<RingLayout> const &rings) {
 RingCells::Key findKey(CellPatch const &cell, PatchCorners const &corners, bool hasFlags) {
     int const numEdges = cell.GetNumCorners();
     RingCells::Key key;
+    key.reserve(cell.patch.faceSizes.size() + cell.patch.faceVerts.size());
     std::vector<int> ring;
     int first = 0;
     for (int const size : cell.patch.faceSizes) {
@@ -154,7 +155,7 @@ std::vector<int> RingCell::GetKey() const {
 std::unique_ptr<RingCell const> RingCells::make(CellPatch const &cell,
                                                 std::vector<RingLayout> const &rings) {
     RingPlaces points(cell.patch.sources, rings);
-    if (!_masks.AreUsed()) {
+    if (!_masks.HaveSecondStep()) {
         CellType const &type = _types.Find(cell, GetRules());
         return std::make_unique<RingCell const>(type, std::move(points));
     }
@@ -195,7 +196,7 @@ RingItem const &RingItem::Get(CellType const &type, CellPatch const &patch, Ring
         }
         item.cell = &cells.Find(
             getChildKind(patch.kind),
-            findKey(FindRingLayouts(patch.patch, patch.locals, cells.GetMasks().AreUsed())),
+            findKey(FindRingLayouts(patch.patch, patch.locals, cells.GetMasks().HaveSecondStep())),
             [&] { return makeItemCell(patch, cells.GetRules()); });
         return item;
     });
@@ -206,7 +207,7 @@ class FaceRings::Maker {
 public:
     Maker(CellPatch const &cell, RingCells &cells)
         : _cell(cell), _cells(cells), _numEdges(cell.GetNumCorners()),
-          _layouts(FindRingLayouts(cell.patch, cell.locals, cells.GetMasks().AreUsed())) {}
+          _layouts(FindRingLayouts(cell.patch, cell.locals, cells.GetMasks().HaveSecondStep())) {}
 
     std::unique_ptr<RingFace const> Make() {
         auto face = std::make_unique<RingFace>(_cells.GetMemory());
@@ -290,7 +291,7 @@ FaceRings::FaceRings(CellPatch const &cell, RingCells &cells) : _patterns(cells.
     bool const isPlain = _rings.Init(corners, cell.locals, cells.GetMasks());
     assert(isPlain);
     static_cast<void>(isPlain);
-    _cells = &cells.FindFace(findKey(cell, corners, cells.GetMasks().AreUsed()),
+    _cells = &cells.FindFace(findKey(cell, corners, cells.GetMasks().HaveSecondStep()),
                              [&] { return Maker(cell, cells).Make(); });
 }
 

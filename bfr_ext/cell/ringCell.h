@@ -155,7 +155,7 @@ public:
           _faces(types.GetMemory()), _latticeItems(types.GetMemory()) {}
 
     CellRules const &GetRules() const { return _masks.GetRules(); }
-    InnerMasks &GetMasks() { return _masks; }
+    RingMasks &GetMasks() { return _masks; }
     MemoryCount &GetMemory() { return _types.GetMemory(); }
 
     /// \brief Finds a cell by its kind and the rings that tell what it is.
@@ -193,7 +193,7 @@ private:
                          std::vector<RingLayout> const &rings);
 
     CellTypes &_types;
-    InnerMasks _masks;
+    RingMasks _masks;
     PatternTable _found; // pointers, by kind and rings
     PatternTable _faces;
     PatternTable _latticeItems; // pointers to types

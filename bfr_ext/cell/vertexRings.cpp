@@ -4,8 +4,7 @@
 #include "patchCorners.h"
 
 #include <algorithm>
-#include <cstring>
-#include <limits>
+#include <utility>
 
 namespace OpenSubdivHex::BfrExt::internal {
 
@@ -35,218 +34,248 @@ class VertexRings::Builder {
 public:
     // Its memory is kept for the next patch.
     struct Scratch {
-        struct Point {
-            Number point;
-            double weight;
+        // A mask that the patch has, by what tells it from others of its kind.
+        struct Found {
+            int numFaces;
+            int size;
+            Number mask;
         };
 
-        std::vector<Number> program;
-        std::vector<double> weights;
-        std::vector<std::pair<int, int>> masks; // by size, the first of its weights
+        std::vector<Mask const *> masks;
+        std::vector<Found> faces;
+        std::vector<Found> vertices;
+        std::vector<Found> neighbors;
+        std::vector<int> key;
+        std::vector<Number> program; // and what longer ones before had behind it
         std::vector<int> ring;
-        std::vector<int> faceSizes;
-        std::vector<int> neighborRing;
-        std::vector<Point> points; // as many as the patch has corners at least
+        std::vector<int> sizes;
+        std::vector<Number> around; // the points around a neighbor, and one whose numbers are 0
     };
 
-    Builder(VertexRings &rings, PatchCorners const &corners, CellRules const &rules,
-            Scratch &scratch)
-        : _rings(rings), _corners(corners), _rules(rules), _scratch(scratch),
-          _zero(int(corners.GetPatch().sources.size())) {
-        _isInRange = std::size_t(_zero) <= kLastNumber;
-        _scratch.program.clear();
-        _scratch.weights.clear();
+    Builder(VertexRings &rings, PatchCorners const &corners, RingMasks &masks, Scratch &scratch)
+        : _rings(rings), _corners(corners), _masks(masks), _scratch(scratch) {
         _scratch.masks.clear();
-        _scratch.points.resize(
-            std::max(_scratch.points.size(), corners.GetPatch().faceVerts.size()));
+        _scratch.faces.clear();
+        _scratch.vertices.clear();
+        _scratch.neighbors.clear();
+        std::vector<Number> &around = _scratch.around;
+        around.resize(std::max(around.size(), corners.GetPatch().faceVerts.size() + 1));
     }
 
     bool Add(int firstCorner) {
         std::vector<int> &corners = _scratch.ring;
-        if (_scratch.program.size() > kLastNumber || !_corners.FindRing(firstCorner, corners)) {
+        if (_programSize > kLastNumber || !_corners.FindRing(firstCorner, corners)) {
             return false;
         }
-        _rings._firsts.push_back(std::uint32_t(_scratch.program.size()));
-        std::vector<int> &sizes = _scratch.faceSizes;
-        sizes.clear();
+        int const numFaces = int(corners.size());
+        _rings._firsts.push_back(std::uint32_t(_programSize));
+        Number *const header = extendProgram(kRingHeaderSize);
+        header[kVertex] = Number(_corners.GetVertex(firstCorner));
+        header[kVertexMask] = findMask(RingMasks::Of::FirstVertex, _scratch.vertices, numFaces, 0);
         _latticeSize = _corners.GetFaceSize(firstCorner);
-        _isInLattice = isRegular(corners);
-        VertexVertexMask const mask = getVertexMask(corners);
-        add(_corners.GetVertex(firstCorner));
-        add(int(corners.size()));
-        add(findWeight(mask.vertexWeight));
-        add(findWeight(mask.faceWeight));
+        _isInLattice = isRegular(numFaces, _latticeSize);
+        std::vector<int> &sizes = _scratch.sizes;
+        sizes.clear();
         // The neighbour where a face begins is the last corner of the face before.
         int before = corners.back();
         for (int const corner : corners) {
             int const size = _corners.GetFaceSize(corner);
-            sizes.push_back(size);
-            add(size);
-            add(findMask(size));
-            for (int i = 1; i < size; ++i) {
-                add(_corners.GetVertex(_corners.GetNext(corner, i)));
-            }
-            if (!addNeighbor(_corners.GetBefore(before))) {
+            Number neighbor;
+            if (!findNeighbor(_corners.GetBefore(before), neighbor)) {
                 return false;
+            }
+            _isInLattice = _isInLattice && size == _latticeSize;
+            sizes.push_back(size);
+            Mask const &ofNeighbor = *_scratch.masks[neighbor];
+            Number *to = extendProgram(kFaceHeaderSize + std::size_t(size - 1) +
+                                       ofNeighbor.numSteps.size() + ofNeighbor.places.size());
+            to[kFaceSize] = Number(size);
+            to[kFaceMask] = findMask(RingMasks::Of::FirstFace, _scratch.faces, 1, size);
+            to[kNeighborMask] = neighbor;
+            to[kNumRuns] = Number(ofNeighbor.numSteps.size());
+            to += kFaceHeaderSize;
+            for (int i = 1; i < size; ++i) {
+                *to++ = Number(_corners.GetVertex(_corners.GetNext(corner, i)));
+            }
+            Number const *place = ofNeighbor.places.data();
+            for (Number const numSteps : ofNeighbor.numSteps) {
+                *to++ = numSteps;
+                for (std::size_t i = 0; i < numSteps * kRunStep; ++i) {
+                    *to++ = _scratch.around[*place++];
+                }
             }
             before = corner;
         }
         Ring ring = {RingFaceSizes(sizes), {_rings._numPoints, 0}, _isInLattice};
         _rings._numPoints += ring.GetNumPoints(RingStep::First);
         _rings._rings.push_back(std::move(ring));
-        return _isInRange;
+        return true;
     }
 
     void Finish() {
-        std::vector<double> const &weights = _scratch.weights;
-        std::vector<float> const floats(weights.begin(), weights.end());
-        std::vector<std::byte> &block = _rings._block;
-        auto const getNumBytes = [](auto const &array) {
-            constexpr std::size_t kUnit = sizeof(double);
-            return (array.size() * sizeof(array[0]) + kUnit - 1) / kUnit * kUnit;
-        };
-        _rings._firstOfProgram = std::uint32_t(getNumBytes(floats));
-        _rings._firstDouble = _rings._firstOfProgram + std::uint32_t(getNumBytes(_scratch.program));
-        block.resize(_rings._firstDouble + getNumBytes(weights));
-        auto const copy = [&](auto const &array, std::size_t first) {
-            std::memcpy(&block[first], array.data(), array.size() * sizeof(array[0]));
-        };
-        copy(floats, 0);
-        copy(_scratch.program, _rings._firstOfProgram);
-        copy(weights, _rings._firstDouble);
+        _rings._masks = _scratch.masks;
+        auto const program = _scratch.program.begin();
+        _rings._program.assign(program, program + std::ptrdiff_t(_programSize));
     }
 
 private:
-    static constexpr std::size_t kLastNumber = std::numeric_limits<Number>::max();
+    using Found = Scratch::Found;
 
-    Number toNumber(int number) {
-        _isInRange = _isInRange && std::size_t(number) <= kLastNumber;
-        return Number(number);
-    }
-    void add(int number) { _scratch.program.push_back(toNumber(number)); }
-
-    // Whether so many faces meet at a vertex as in a lattice, all of them of its size.
-    bool isRegular(std::vector<int> const &corners) const {
-        return int(corners.size()) == CellType::GetLatticeValence(_latticeSize) &&
-               std::all_of(corners.begin(), corners.end(), [&](int corner) {
-                   return _corners.GetFaceSize(corner) == _latticeSize;
-               });
+    Number *extendProgram(std::size_t count) {
+        std::size_t const first = _programSize;
+        _programSize += count;
+        if (_scratch.program.size() < _programSize) {
+            _scratch.program.resize(2 * _programSize);
+        }
+        return &_scratch.program[first];
     }
 
-    VertexVertexMask getVertexMask(std::vector<int> const &corners) const {
-        return FarExt::ComputeVertexVertexMask(_rules.interpolation, int(corners.size()));
+    // Whether so many faces meet at a vertex as in the lattice that may be there.
+    bool isRegular(int numFaces, int size) const {
+        return size == _latticeSize && numFaces == CellType::GetLatticeValence(_latticeSize);
     }
 
-    // The first of the weights of a face's mask.
-    int findMask(int size) {
-        for (auto const &[other, first] : _scratch.masks) {
-            if (other == size) {
-                return first;
+    // Finds a mask for so many faces, which have a size where it matters: mostly one that the patch has already, which
+    // takes less time than to find it in the table of all.
+    Number findMask(RingMasks::Of of, std::vector<Found> &ofKind, int numFaces, int size) {
+        for (Found const &found : ofKind) {
+            if (found.numFaces == numFaces && found.size == size) {
+                return found.mask;
             }
         }
-        int const first = int(_scratch.weights.size());
-        _scratch.weights.resize(_scratch.weights.size() + std::size_t(size));
-        FarExt::ComputeFaceVertexMask(_rules.hexSchemeOptions.faceMask, _rules.interpolation, size,
-                                      &_scratch.weights[std::size_t(first)]);
-        _scratch.masks.emplace_back(size, first);
-        return first;
+        _scratch.key.assign(std::size_t(numFaces), size);
+        ofKind.push_back({numFaces, size, addMask(of)});
+        return ofKind.back().mask;
     }
-    int findWeight(double weight) {
-        std::vector<double> &weights = _scratch.weights;
-        auto const found = std::find(weights.begin(), weights.end(), weight);
-        if (found == weights.end()) {
-            weights.push_back(weight);
-            return int(weights.size()) - 1;
-        }
-        return int(found - weights.begin());
+    // By the sizes of the faces, which are the key.
+    Number addMask(RingMasks::Of of) {
+        std::vector<int> const &sizes = _scratch.key;
+        _scratch.masks.push_back(&_masks.Find<Mask>(of, sizes, [&]() -> Mask {
+            switch (of) {
+            case RingMasks::Of::FirstFace:
+                return {RingMasks::Weights(makeFace(sizes[0])), {}, {}};
+            case RingMasks::Of::FirstNeighbor:
+                return makeNeighbor(sizes);
+            default: {
+                VertexVertexMask const mask = getVertexMask(int(sizes.size()));
+                return {RingMasks::Weights({mask.vertexWeight, mask.faceWeight}), {}, {}};
+            }
+            }
+        }));
+        return Number(_scratch.masks.size() - 1);
+    }
+    VertexVertexMask getVertexMask(int numFaces) const {
+        return FarExt::ComputeVertexVertexMask(_masks.GetRules().interpolation, numFaces);
+    }
+    std::vector<double> makeFace(int size) const {
+        CellRules const &rules = _masks.GetRules();
+        std::vector<double> weights(std::size_t(size), 0.0);
+        FarExt::ComputeFaceVertexMask(rules.hexSchemeOptions.faceMask, rules.interpolation, size,
+                                      weights.data());
+        return weights;
     }
 
-    // A V-vertex in terms of the patch: first its own weight, and then runs of points that have the same
-    // weight, those at the vertex of the ring first.
-    bool addNeighbor(int firstCorner) {
-        std::vector<int> &corners = _scratch.neighborRing;
-        if (!_corners.FindRing(firstCorner, corners)) {
+    // Finds the mask of a neighbour from a corner on, and the points around it, those at the vertex of the ring first;
+    // false where there is a boundary.
+    bool findNeighbor(int firstCorner, Number &mask) {
+        int const size = _corners.GetFaceSize(firstCorner);
+        bool areSame = true;
+        int numFaces = 0;
+        Number *end = _scratch.around.data();
+        int corner = firstCorner;
+        do {
+            int const ofFace = _corners.GetFaceSize(corner);
+            areSame = areSame && ofFace == size;
+            for (int i = 1; i + 1 < ofFace; ++i) {
+                *end++ = Number(_corners.GetVertex(_corners.GetNext(corner, i)));
+            }
+            corner = _corners.GetNextAround(corner);
+            ++numFaces;
+        } while (corner >= 0 && corner != firstCorner);
+        if (corner < 0) {
             return false;
         }
-        _isInLattice = _isInLattice && isRegular(corners);
-        VertexVertexMask const mask = getVertexMask(corners);
-        double ownWeight = mask.vertexWeight;
-        Scratch::Point *const points = _scratch.points.data();
-        Scratch::Point *end = points;
-        int sizeBefore = _corners.GetFaceSize(corners.back());
-        int maskBefore = findMask(sizeBefore);
-        for (int const corner : corners) {
-            int const size = _corners.GetFaceSize(corner);
-            int const ofFace = size == sizeBefore ? maskBefore : findMask(size);
-            double const *const weights = _scratch.weights.data();
-            ownWeight += mask.faceWeight * weights[ofFace];
-            double weight = mask.faceWeight * weights[ofFace + 1] +
-                            mask.faceWeight * weights[maskBefore + sizeBefore - 1];
-            for (int i = 1; i + 1 < size; ++i, ++end) {
-                end->point = Number(_corners.GetVertex(_corners.GetNext(corner, i)));
-                end->weight = weight;
-                weight = mask.faceWeight * weights[ofFace + i + 1];
-            }
-            sizeBefore = size;
-            maskBefore = ofFace;
+        *end = Number(_corners.GetPatch().sources.size());
+        _isInLattice = _isInLattice && areSame && isRegular(numFaces, size);
+        if (areSame) {
+            mask = findMask(RingMasks::Of::FirstNeighbor, _scratch.neighbors, numFaces, size);
+            return true;
         }
-        add(findWeight(ownWeight));
-        // Runs of the weight of the first point that is left.
-        std::vector<Number> &program = _scratch.program;
-        std::size_t const first = program.size();
-        program.resize(first + 1 + std::size_t(end - points) * (kRunHeaderSize + kRunStep));
-        Number &numRuns = program[first];
-        Number *to = &numRuns + 1;
-        for (; end != points; ++numRuns) {
-            double const weight = points->weight;
-            Number *const run = to;
-            run[kRunWeight] = toNumber(findWeight(weight));
-            to += kRunHeaderSize;
-            Scratch::Point *rest = points;
-            for (Scratch::Point const *point = points; point != end; ++point) {
-                if (point->weight == weight) {
-                    *to++ = point->point;
-                } else {
-                    *rest++ = *point;
-                }
-            }
-            end = rest;
-            while (std::size_t(to - run - kRunHeaderSize) % kRunStep != 0) {
-                *to++ = Number(_zero);
-            }
-            run[kNumSteps] = Number(std::size_t(to - run - kRunHeaderSize) / kRunStep);
+        _scratch.key.clear();
+        for (int i = 0; i < numFaces; ++i, corner = _corners.GetNextAround(corner)) {
+            _scratch.key.push_back(_corners.GetFaceSize(corner));
         }
-        program.resize(std::size_t(to - program.data()));
+        mask = addMask(RingMasks::Of::FirstNeighbor);
         return true;
+    }
+
+    // Sums up what the faces around a neighbour give to each of their points; runs are in the order of their first points.
+    Mask makeNeighbor(std::vector<int> const &sizes) const {
+        struct Point {
+            Number place;
+            double weight;
+        };
+        VertexVertexMask const mask = getVertexMask(int(sizes.size()));
+        double ownWeight = mask.vertexWeight;
+        std::vector<Point> points;
+        double lastBefore = makeFace(sizes.back()).back();
+        for (int const size : sizes) {
+            std::vector<double> const ofFace = makeFace(size);
+            ownWeight += mask.faceWeight * ofFace[0];
+            double weight = mask.faceWeight * ofFace[1] + mask.faceWeight * lastBefore;
+            for (std::size_t i = 1; i + 1 < ofFace.size(); ++i) {
+                points.push_back({Number(points.size()), weight});
+                weight = mask.faceWeight * ofFace[i + 1];
+            }
+            lastBefore = ofFace.back();
+        }
+        auto const zero = Number(points.size());
+        std::vector<double> weights = {ownWeight};
+        std::vector<Number> numSteps;
+        std::vector<Number> places;
+        while (!points.empty()) {
+            double const weight = points[0].weight;
+            auto const rest =
+                std::stable_partition(points.begin(), points.end(),
+                                      [&](Point const &point) { return point.weight == weight; });
+            auto const numPoints = std::size_t(rest - points.begin());
+            std::size_t const ofRun = (numPoints + kRunStep - 1) / kRunStep;
+            std::for_each(points.begin(), rest,
+                          [&](Point const &point) { places.push_back(point.place); });
+            places.resize(places.size() + ofRun * kRunStep - numPoints, zero);
+            weights.push_back(weight);
+            numSteps.push_back(Number(ofRun));
+            points.erase(points.begin(), rest);
+        }
+        return {RingMasks::Weights(std::move(weights)), std::move(numSteps), std::move(places)};
     }
 
     VertexRings &_rings;
     PatchCorners const &_corners;
-    CellRules const &_rules;
+    RingMasks &_masks;
     Scratch &_scratch;
-    int const _zero; // the point behind those of the patch
-    bool _isInRange = true;
+    std::size_t _programSize = 0;
     // The ring that is added: the size of its first face, and whether it is in a lattice so far.
     int _latticeSize = 0;
     bool _isInLattice = false;
 };
 
 bool VertexRings::Init(PatchCorners const &ofPatch, std::vector<int> const &corners,
-                       InnerMasks &masks) {
-    if (hasFeatures(ofPatch.GetPatch())) {
+                       RingMasks &masks) {
+    if (hasFeatures(ofPatch.GetPatch()) || ofPatch.GetPatch().sources.size() > kLastNumber) {
         return false;
     }
     static thread_local Builder::Scratch scratch;
-    Builder builder(*this, ofPatch, masks.GetRules(), scratch);
-    _firsts.reserve(corners.size());
+    Builder builder(*this, ofPatch, masks, scratch);
     _rings.reserve(corners.size());
+    _firsts.reserve(corners.size());
     for (int const corner : corners) {
         if (!builder.Add(corner)) {
             return false;
         }
     }
     builder.Finish();
-    if (masks.AreUsed()) {
+    if (masks.HaveSecondStep()) {
         for (Ring &ring : _rings) {
             ring.firstPoints[std::size_t(RingStep::Second)] = _numPoints;
             _numPoints += ring.GetNumPoints(RingStep::Second);
@@ -256,26 +285,24 @@ bool VertexRings::Init(PatchCorners const &ofPatch, std::vector<int> const &corn
     return true;
 }
 
-// Writes the block of a face but for the vertex of the ring, and returns where the program goes on.
+// Writes the block of a face but for the vertex of the ring, and returns where the points of the next one begin.
 template <std::size_t PADDED_SIZE, typename REAL>
-VertexRings::Number const *VertexRings::applyFace(Number const *program, REAL const *weights,
-                                                  Lanes<REAL> const &center, REAL const *points,
-                                                  std::size_t paddedSize, REAL *result) {
+VertexRings::Number const *VertexRings::applyFace(Number const *program, Lanes<REAL> const &center,
+                                                  REAL const *points, std::size_t paddedSize,
+                                                  REAL *result) const {
     std::size_t const stride = PADDED_SIZE == 0 ? paddedSize : PADDED_SIZE;
     std::size_t const faceSize = program[kFaceSize];
-    REAL const *const mask = weights + program[kMask];
+    REAL const *const mask = _masks[program[kFaceMask]]->weights.Get(REAL());
     Number const *const verts = program + kFaceHeaderSize; // behind that which has the ring
-    Number const *const neighbor = verts + (faceSize - 1);
     auto const load = [&](std::size_t point) { return Lanes<REAL>::Load(points + point * stride); };
     auto const store = [&](Lanes<REAL> const &sum, std::size_t place) {
         sum.Store(result + place * stride);
     };
-    Lanes<REAL> sum = load(verts[0]) * weights[neighbor[kOwnWeight]];
-    Number const *run = neighbor + kNeighborHeaderSize;
-    for (std::size_t i = neighbor[kNumRuns]; i > 0; --i) {
-        REAL const weight = weights[run[kRunWeight]];
-        std::size_t numSteps = run[kNumSteps];
-        run += kRunHeaderSize;
+    REAL const *weight = _masks[program[kNeighborMask]]->weights.Get(REAL());
+    Lanes<REAL> sum = load(verts[0]) * *weight;
+    Number const *run = verts + (faceSize - 1);
+    for (std::size_t i = program[kNumRuns]; i > 0; --i) {
+        std::size_t numSteps = *run++;
         static_assert(kRunStep == 4);
         auto const loadStep = [&] {
             return (load(run[0]) + load(run[1])) + (load(run[2]) + load(run[3]));
@@ -284,7 +311,7 @@ VertexRings::Number const *VertexRings::applyFace(Number const *program, REAL co
         for (run += kRunStep; --numSteps > 0; run += kRunStep) {
             ofPoints = ofPoints + loadStep();
         }
-        sum = sum + ofPoints * weight;
+        sum = sum + ofPoints * *++weight;
     }
     store(sum, 1);
     auto const getVertex = [&](std::size_t place) {
@@ -311,9 +338,9 @@ template <std::size_t PADDED_SIZE, typename REAL>
 void VertexRings::apply(std::size_t number, int turn, REAL const *points, std::size_t paddedSize,
                         REAL *first, REAL *second) const {
     std::size_t const stride = PADDED_SIZE == 0 ? paddedSize : PADDED_SIZE;
-    REAL const *const weights = getWeights(REAL());
-    Number const *const program = getProgram() + _firsts[number];
     Ring const &ring = _rings[number];
+    Number const *const program = &_program[_firsts[number]];
+    REAL const *const weights = _masks[program[kVertexMask]]->weights.Get(REAL());
     int const numFaces = ring.GetNumFaces();
     int const firstFace = ring.GetFirstFace(turn);
     REAL *const begin = first + ring.GetBlock(turn, 0, RingStep::First) * stride;
@@ -322,10 +349,9 @@ void VertexRings::apply(std::size_t number, int turn, REAL const *points, std::s
         Number const *face = program + kRingHeaderSize;
         REAL *block = begin;
         for (int i = 0; i < numFaces; ++i) {
-            block = i == firstFace ? first : block;
             std::size_t const size = kNumOthers + std::size_t(face[kFaceSize]);
-            face = applyFace<PADDED_SIZE>(face, weights, center, points + lane, paddedSize,
-                                          block + lane);
+            block = i == firstFace ? first : block;
+            face = applyFace<PADDED_SIZE>(face, center, points + lane, paddedSize, block + lane);
             block += size * stride;
         }
         // Calls function(block) for all blocks in the vertex's order.
@@ -343,7 +369,7 @@ void VertexRings::apply(std::size_t number, int turn, REAL const *points, std::s
                 sum = sum + Lanes<REAL>::Load(ofFace + kNumOthers * stride);
             }
         });
-        sum = center * weights[program[kVertexWeight]] + sum * weights[program[kFaceWeight]];
+        sum = center * weights[0] + sum * weights[1];
         forEachBlock([&](REAL *ofFace) { sum.Store(ofFace); });
     }
     if (_inner.IsUsed()) {

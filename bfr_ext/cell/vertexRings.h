@@ -7,7 +7,7 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <utility>
+#include <limits>
 #include <vector>
 
 namespace OpenSubdivHex::BfrExt::internal {
@@ -29,16 +29,18 @@ public:
     ///
     /// \param masks  of the rules of the steps
     /// \return       false where a ring or a neighbour is not plain; then the result is of no use
-    bool Init(PatchCorners const &ofPatch, std::vector<int> const &corners, InnerMasks &masks);
+    bool Init(PatchCorners const &ofPatch, std::vector<int> const &corners, RingMasks &masks);
 
     std::vector<Ring> const &GetRings() const { return _rings; }
-    std::size_t GetHeapSize() const { return GetHeapSizes(_rings, _firsts, _block, _inner); }
+    std::size_t GetHeapSize() const {
+        return GetHeapSizes(_rings, _firsts, _masks, _program, _inner);
+    }
     /// Points of all rings, of all steps.
     std::size_t GetNumPoints() const { return _numPoints; }
     /// The last step that made points.
     RingStep GetLastStep() const { return _inner.IsUsed() ? RingStep::Second : RingStep::First; }
     /// The vertex of a ring, as a point of the patch.
-    int GetVertex(std::size_t ring) const { return getProgram()[_firsts[ring] + kVertex]; }
+    int GetVertex(std::size_t ring) const { return _program[_firsts[ring] + kVertex]; }
     /// Where the points of a ring lie among those of all rings, seen from a face.
     RingPoints GetPoints(int ring, int turn, int face, RingStep step) const {
         Ring const &ofVertex = _rings[std::size_t(ring)];
@@ -69,39 +71,37 @@ public:
 private:
     using Number = std::uint16_t;
 
-    // Apply() runs a program of numbers.  Each ring has a header and then its faces; a face has
-    // a header, its vertices behind that of the ring, and the V-vertex of the neighbour where the face begins,
-    // which is the first of these vertices; a V-vertex has a header and runs of points that have one weight;
-    // and a run has a header and its points.  These are the places in the headers.
-    enum RingHeader : std::uint8_t {
-        kVertex,
-        kNumFaces,
-        kVertexWeight,
-        kFaceWeight,
-        kRingHeaderSize
+    // Places in the headers of the program.  A mask is its number among those of the face.
+    enum RingHeader : std::uint8_t { kVertex, kVertexMask, kRingHeaderSize };
+    enum FaceHeader : std::uint8_t {
+        kFaceSize,
+        kFaceMask,
+        kNeighborMask,
+        kNumRuns,
+        kFaceHeaderSize
     };
-    enum FaceHeader : std::uint8_t { kFaceSize, kMask, kFaceHeaderSize };
-    enum NeighborHeader : std::uint8_t { kOwnWeight, kNumRuns, kNeighborHeaderSize };
-    enum RunHeader : std::uint8_t { kRunWeight, kNumSteps, kRunHeaderSize };
+
     // Points that are added up at once: what a run has less is filled up with zeros, since loops of different
     // lengths cost more than sums.
     static constexpr std::size_t kRunStep = 4;
+    static constexpr std::size_t kLastNumber = std::numeric_limits<Number>::max();
     static constexpr std::size_t kNumOthers = Ring::GetNumOthers(RingStep::First);
 
+    // The mask of a vertex: its own weight, and that of F-vertices; of an F-vertex: the weights of the face's vertices from
+    // its own on; or of a neighbour: its own weight, and those of *runs*, the points of which have one weight.
+    struct Mask {
+        std::size_t GetHeapSize() const { return GetHeapSizes(weights, numSteps, places); }
+
+        RingMasks::Weights weights;
+        // Of a neighbour, by run: how many times kRunStep points it has, and which they are of those around the neighbour.
+        std::vector<Number> numSteps;
+        std::vector<Number> places;
+    };
+
     class Builder;
-    float const *getWeights(float /*precision*/) const {
-        return reinterpret_cast<float const *>(_block.data());
-    }
-    double const *getWeights(double /*precision*/) const {
-        return reinterpret_cast<double const *>(_block.data() + _firstDouble);
-    }
-    Number const *getProgram() const {
-        return reinterpret_cast<Number const *>(_block.data() + _firstOfProgram);
-    }
     template <std::size_t PADDED_SIZE, typename REAL>
-    static Number const *applyFace(Number const *program, REAL const *weights,
-                                   Lanes<REAL> const &center, REAL const *points,
-                                   std::size_t paddedSize, REAL *result);
+    Number const *applyFace(Number const *program, Lanes<REAL> const &center, REAL const *points,
+                            std::size_t paddedSize, REAL *result) const;
     template <std::size_t PADDED_SIZE, typename REAL>
     void apply(std::size_t number, int turn, REAL const *points, std::size_t paddedSize,
                REAL *first, REAL *second) const;
@@ -109,11 +109,11 @@ private:
     std::size_t _numPoints = 0;
     std::vector<Ring> _rings;
     std::vector<std::uint32_t> _firsts; // by ring, in the program
-    // The weights that differ in single precision, the program, and the weights in double precision: all that a
-    // face needs is read from end to end, and mostly not in the cache.
-    std::vector<std::byte> _block; // in which arrays may begin at multiples of 8
-    std::uint32_t _firstOfProgram = 0;
-    std::uint32_t _firstDouble = 0;
+    std::vector<Mask const *> _masks;
+    // Each ring has a header and then its faces; a face has a header, its vertices behind that of the ring, the first of
+    // which is the neighbour where the face begins, and the runs of this neighbour, each their number of steps and their
+    // points.  All that a face needs is read from end to end, and mostly not in the cache.
+    std::vector<Number> _program;
     InnerRings _inner;
 };
 

@@ -86,44 +86,16 @@ void GatherBaseCell(SurfaceFaces const &faces, Index face, Sdc::Options sdcOptio
     gather(gatherer, faces.GetLevel(), faces.GetLevelFace(face).face, cell);
 }
 
-CellPatch MakePlainBaseCell(std::vector<int> faceSizes, std::vector<Index> faceVerts, int numInner,
-                            int numPoints) {
-    auto const size = std::size_t(faceSizes[0]);
-    auto const end = std::size_t(numPoints);
-    CellPatch cell;
-    cell.locals.resize(size);
-    std::iota(cell.locals.begin(), cell.locals.end(), 0);
-    cell.corners.assign(faceVerts.begin(), faceVerts.begin() + std::ptrdiff_t(size));
+void FinishPlainBaseCell(int numPoints, CellPatch &cell) {
     LimitPatch &patch = cell.patch;
-    patch.sources.resize(end);
+    cell.locals.resize(std::size_t(patch.faceSizes[0]));
+    std::iota(cell.locals.begin(), cell.locals.end(), 0);
+    cell.corners.assign(patch.faceVerts.begin(), patch.faceVerts.begin() + patch.faceSizes[0]);
+    patch.sources.resize(std::size_t(numPoints));
     std::iota(patch.sources.begin(), patch.sources.end(), 0);
-    patch.otherCorners.assign(faceVerts.size(), Index(kFreeBoundary));
-    patch.edgeSharpness.resize(faceVerts.size());
-    patch.diagonalSharpness.resize(faceSizes.size());
-    patch.vertSharpness.resize(end);
-    // The corners from which there is an edge from one point to another, by the two: small numbers, since all of them are
-    // cleared first.
-    assert(faceVerts.size() <= std::size_t(std::numeric_limits<std::int16_t>::max()));
-    std::vector<std::int16_t> corners(end * end, std::int16_t(Far::INDEX_INVALID));
-    Index first = 0;
-    for (int const faceSize : faceSizes) {
-        for (int i = 0; i < faceSize; ++i) {
-            Index const corner = first + i;
-            Index const start = faceVerts[std::size_t(corner)];
-            Index const next = i + 1 == faceSize ? first : corner + 1;
-            Index const stop = faceVerts[std::size_t(next)];
-            corners[std::size_t(start) * end + std::size_t(stop)] = std::int16_t(corner);
-            Index const other = corners[std::size_t(stop) * end + std::size_t(start)];
-            if (other != Far::INDEX_INVALID && (start < numInner || stop < numInner)) {
-                patch.otherCorners[std::size_t(corner)] = other;
-                patch.otherCorners[std::size_t(other)] = corner;
-            }
-        }
-        first += faceSize;
-    }
-    patch.faceSizes = std::move(faceSizes);
-    patch.faceVerts = std::move(faceVerts);
-    return cell;
+    patch.edgeSharpness.resize(patch.faceVerts.size());
+    patch.diagonalSharpness.resize(patch.faceSizes.size());
+    patch.vertSharpness.resize(std::size_t(numPoints));
 }
 
 void FindBaseCellTurns(SurfaceFaces const &faces, Index face, int *turns) {

@@ -51,11 +51,9 @@ OPENSUBDIVHEX_API void GatherBaseCell(SurfaceFaces const &faces, Far::Index face
 /// \brief Makes the cell of a base face that GatherBaseCell() gathers where no feature is near, but for the
 /// sources, which are the numbers of the points themselves.
 ///
-/// \param faceSizes, faceVerts  of the patch, the base face first; at most 32,767 corners
-/// \param numInner              points all of whose faces are in the patch, the first ones
-OPENSUBDIVHEX_API CellPatch MakePlainBaseCell(std::vector<int> faceSizes,
-                                              std::vector<Far::Index> faceVerts, int numInner,
-                                              int numPoints);
+/// \param cell  its patch has the faces, the base face first, and the corners across their edges; all else is empty, or as
+///              such a cell had it
+OPENSUBDIVHEX_API void FinishPlainBaseCell(int numPoints, CellPatch &cell);
 
 /// \brief Writes what the edges and vertices of a surface face are in its own eyes, which all faces that
 /// share one need to number it alike: its *turns*.

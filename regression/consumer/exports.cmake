@@ -9,7 +9,7 @@ set(called AllocateArray FreeArray PrepareArray RangeQueue ForEachRange Report I
   LimitRows CheckLimitLevel LimitOrigins LatticePatch LatticeFaces PlainFaces
   RegularFaces MakeFaceParameterization FindInPlane FindFaceCoords FindCellPatchPoints
   GetStepsToLimit GatherBaseCell FindBaseCellTurns GatherBorder RefineCell
-  UseNextMasks ComesApart GatherFanItems FindCornerLimits PatchRefinement GetVertexMarks StepRowBack MakePlainBaseCell IndexMap MakeQuadFlag QuadCorners
+  UseNextMasks ComesApart GatherFanItems FindCornerLimits PatchRefinement GetVertexMarks StepRowBack FinishPlainBaseCell IndexMap MakeQuadFlag QuadCorners
   Device MakeDeviceLimit MakeDeviceRefinements
   CheckChannel CheckStencilMode GetChannelInterpolation GetModeInterpolation
   CheckLevel CheckDescriptors)
