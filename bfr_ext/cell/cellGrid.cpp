@@ -15,6 +15,9 @@ namespace {
 // children, which have fewer samples, exceed it mostly by less than a quarter.
 constexpr double kFactorOfCell = 1.125;
 constexpr double kFactorOfChildren = 1.25;
+// Margins of balls: sides of children that bend in the plane of their corners have no samples between these.
+constexpr double kBallOfCell = 1.25;
+constexpr double kBallOfChildren = 1.5;
 // Each step leaves a quarter of the thickness where the surface is smooth: with a margin, of the factors' size.
 constexpr double kLeastOfWhole = 0.3;
 constexpr double kExpected = 0.22;
@@ -37,7 +40,9 @@ CellGrid &CellGrid::Get(FaceShape shape) {
 int CellGrid::add(CellOutline<Pair> const &outline, int numSteps) {
     std::size_t const number = _cells.size();
     _cells.emplace_back();
-    _cells[number].factor = numSteps == kNumSteps ? kFactorOfCell : kFactorOfChildren;
+    bool const isFirst = numSteps == kNumSteps;
+    _cells[number].factor = isFirst ? kFactorOfCell : kFactorOfChildren;
+    _cells[number].ballFactor = isFirst ? kBallOfCell : kBallOfChildren;
     for (int i = 0; i < outline.GetNumCorners(_shape); ++i) {
         _cells[number].corners.push_back(int(_places.Find(outline.GetCorner(_shape, i))));
     }
@@ -132,20 +137,19 @@ void CellGrid::measure(std::vector<double> const &samples, Cell const &cell,
     double const length = GetLength(area);
     Vector3 const normal = length > 0 ? Scale(area, 1 / length) : Vector3{0, 0, 1};
     Vector3 const center = Scale(sum, 1 / double(cell.corners.size()));
-    double radius = Dot(center, center); // square, of the corners
-    for (std::size_t i = 1; i < cell.corners.size(); ++i) {
-        Vector3 const d = Subtract(Subtract(getSample(cell.corners[i]), origin), center);
-        radius = std::max(radius, Dot(d, d));
-    }
+    double radius = 0; // square
     double least = 0;
     double largest = 0;
     for (int const sample : cell.samples) {
-        double const height = Dot(normal, Subtract(getSample(sample), origin));
+        Vector3 const p = Subtract(getSample(sample), origin);
+        Vector3 const d = Subtract(p, center);
+        radius = std::max(radius, Dot(d, d));
+        double const height = Dot(normal, p);
         least = std::min(least, height);
         largest = std::max(largest, height);
     }
     measures.thickness = cell.factor * (largest - least);
-    measures.ball = {Add(origin, center), cell.factor * std::sqrt(radius) + measures.thickness};
+    measures.ball = {Add(origin, center), cell.ballFactor * std::sqrt(radius)};
     measures.longestSide = std::sqrt(std::max(longest, Dot(last, last)));
 }
 
@@ -171,23 +175,25 @@ void CellGrid::MeasureChildren(std::vector<double> const &samples, CellMeasures 
 
 CellFacing CellGrid::FindFacing(std::vector<double> const &samples, int cell,
                                 std::vector<Vector3> normals) const {
-    // A margin for angles between the polygons, and for angles of normals within each.
+    // A margin for normals between the samples, and how far those at samples may lean over: where the surface bends
+    // further, too little is known of it.
     constexpr double kFactor = 3;
+    constexpr double kLargest = 1;
     Vector3 sum = {};
     std::vector<Vector3> places;
-    std::vector<double> corners;
     auto const addPolygons = [&](auto const &self, Cell const &part) -> void {
         for (int const child : part.children) {
             self(self, _cells[std::size_t(child)]);
         }
-        if (part.children.empty()) {
-            corners.clear();
-            for (int const corner : part.corners) {
-                double const *const p = &samples[3 * std::size_t(corner)];
-                corners.insert(corners.end(), p, p + 3);
-                places.push_back(ToVector3(p));
-            }
-            normals.push_back(FindArea(corners));
+        std::size_t const numCorners = part.children.empty() ? part.corners.size() : 0;
+        auto const getCorner = [&](std::size_t corner) {
+            return ToVector3(&samples[3 * std::size_t(part.corners[corner % numCorners])]);
+        };
+        for (std::size_t i = 0; i < numCorners; ++i) {
+            Vector3 const place = getCorner(i);
+            places.push_back(place);
+            normals.push_back(Cross(Subtract(getCorner(i + 1), place),
+                                    Subtract(getCorner(i + numCorners - 1), place)));
             sum = Add(sum, normals.back());
         }
     };
@@ -209,6 +215,9 @@ CellFacing CellGrid::FindFacing(std::vector<double> const &samples, int cell,
         }
         largest =
             std::max(largest, GetLength(Subtract(normal, Scale(facing.normal, height))) / height);
+    }
+    if (largest > kLargest) {
+        return facing;
     }
     facing.spread = kFactor * largest;
     for (Vector3 const &place : places) {

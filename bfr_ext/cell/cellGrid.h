@@ -59,6 +59,7 @@ private:
         std::vector<int> samples;  // in the cell
         std::vector<int> children; // in the grid
         double factor;             // of the range of heights
+        double ballFactor;         // of how far samples are from the center
     };
     template <typename FUNCTION>
     void sample(double const *points, std::size_t stride, int numPoints,

@@ -29,17 +29,6 @@ inline Vector3 Cross(Vector3 const &a, Vector3 const &b) {
     return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
 }
 
-/// Twice the area of a polygon along its normal, from its corners, three numbers each.
-inline Vector3 FindArea(std::vector<double> const &corners) {
-    Vector3 const origin = ToVector3(corners.data());
-    Vector3 area = {};
-    for (std::size_t i = 3; i + 3 < corners.size(); i += 3) {
-        area = Add(area, Cross(Subtract(ToVector3(&corners[i]), origin),
-                               Subtract(ToVector3(&corners[i + 3]), origin)));
-    }
-    return area;
-}
-
 /// A ball that encloses some points.
 struct Ball {
     Vector3 center = {};
