@@ -339,7 +339,7 @@ private:
             return getBase().IsOutside(_geometry) ? CellVisibility::Outside
                                                   : CellVisibility::Visible;
         }
-        if (_geometry.IsOutside(measure(node).ball)) {
+        if (_geometry.IsOutside(measure(node).GetOuterBall())) {
             return CellVisibility::Outside;
         }
         return findFacing(node).IsBackFacing(_geometry.GetEye()) ? CellVisibility::BackFacing

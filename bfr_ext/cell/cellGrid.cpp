@@ -15,9 +15,6 @@ namespace {
 // children, which have fewer samples, exceed it mostly by less than a quarter.
 constexpr double kFactorOfCell = 1.125;
 constexpr double kFactorOfChildren = 1.25;
-// Margins of balls: sides of children that bend in the plane of their corners have no samples between these.
-constexpr double kBallOfCell = 1.25;
-constexpr double kBallOfChildren = 1.5;
 // Each step leaves a quarter of the thickness where the surface is smooth: with a margin, of the factors' size.
 constexpr double kLeastOfWhole = 0.3;
 constexpr double kExpected = 0.22;
@@ -40,9 +37,7 @@ CellGrid &CellGrid::Get(FaceShape shape) {
 int CellGrid::add(CellOutline<Pair> const &outline, int numSteps) {
     std::size_t const number = _cells.size();
     _cells.emplace_back();
-    bool const isFirst = numSteps == kNumSteps;
-    _cells[number].factor = isFirst ? kFactorOfCell : kFactorOfChildren;
-    _cells[number].ballFactor = isFirst ? kBallOfCell : kBallOfChildren;
+    _cells[number].factor = numSteps == kNumSteps ? kFactorOfCell : kFactorOfChildren;
     for (int i = 0; i < outline.GetNumCorners(_shape); ++i) {
         _cells[number].corners.push_back(int(_places.Find(outline.GetCorner(_shape, i))));
     }
@@ -136,20 +131,19 @@ void CellGrid::measure(std::vector<double> const &samples, Cell const &cell,
     }
     double const length = GetLength(area);
     Vector3 const normal = length > 0 ? Scale(area, 1 / length) : Vector3{0, 0, 1};
-    Vector3 const center = Scale(sum, 1 / double(cell.corners.size()));
+    Vector3 const center = Add(origin, Scale(sum, 1 / double(cell.corners.size())));
     double radius = 0; // square
-    double least = 0;
-    double largest = 0;
+    double least = std::numeric_limits<double>::infinity();
+    double largest = -least;
     for (int const sample : cell.samples) {
-        Vector3 const p = Subtract(getSample(sample), origin);
-        Vector3 const d = Subtract(p, center);
+        Vector3 const d = Subtract(getSample(sample), center);
         radius = std::max(radius, Dot(d, d));
-        double const height = Dot(normal, p);
+        double const height = Dot(normal, d);
         least = std::min(least, height);
         largest = std::max(largest, height);
     }
     measures.thickness = cell.factor * (largest - least);
-    measures.ball = {Add(origin, center), cell.ballFactor * std::sqrt(radius)};
+    measures.ball = {center, cell.factor * std::sqrt(radius)};
     measures.longestSide = std::sqrt(std::max(longest, Dot(last, last)));
 }
 
@@ -175,9 +169,9 @@ void CellGrid::MeasureChildren(std::vector<double> const &samples, CellMeasures 
 
 CellFacing CellGrid::FindFacing(std::vector<double> const &samples, int cell,
                                 std::vector<Vector3> normals) const {
-    // A margin for normals between the samples, and how far those at samples may lean over: where the surface bends
-    // further, too little is known of it.
-    constexpr double kFactor = 3;
+    // A margin for normals between those at samples.
+    constexpr double kFactor = 3.25;
+    // Where the surface bends by more than half a right angle, too little is known of it.
     constexpr double kLargest = 1;
     Vector3 sum = {};
     std::vector<Vector3> places;

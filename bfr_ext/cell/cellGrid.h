@@ -58,8 +58,7 @@ private:
         std::vector<int> corners;  // as samples
         std::vector<int> samples;  // in the cell
         std::vector<int> children; // in the grid
-        double factor;             // of the range of heights
-        double ballFactor;         // of how far samples are from the center
+        double factor; // of the range of heights, and of how far samples are from the center
     };
     template <typename FUNCTION>
     void sample(double const *points, std::size_t stride, int numPoints,

@@ -37,6 +37,12 @@ struct Ball {
 
 /// \brief Measures of a cell that do not depend on the camera, as far as views have asked for them.
 struct CellMeasures {
+    /// A ball that holds the surface also where long sides bend between samples, in the plane of the corners.
+    Ball GetOuterBall() const {
+        constexpr double kMargin = 1.2;
+        return {ball.center, kMargin * ball.radius};
+    }
+
     Ball ball;               ///< around the surface, estimated
     double longestSide = -1; ///< between corners; -1: not measured
     double thickness =
@@ -47,8 +53,8 @@ struct CellMeasures {
     int facing = -1;    ///< in the same face; -1: not found
 };
 
-/// \brief Where a cell faces, estimated from the polygons of the corners of the cells that one or two steps make of it, and
-/// from the normals of the surface at its own corners.
+/// \brief Where a cell faces, estimated from the polygons of the corners of the cells that one or two steps make of it, by
+/// their normals at each corner, and from the normals of the surface at its own corners.
 ///
 /// With m the unit normal of all, others are m + s w, with w of length 1 at most in the plane across from it.  With c the
 /// mean of the places and r how far they are from it, (m + s w) . (eye - p) is at most m . (eye - c) - m . (p - c) +

@@ -40,6 +40,7 @@ using BfrExt::Polyline;
 using BfrExt::Surface;
 using BfrExt::View;
 using BfrExt::internal::BaseType;
+using BfrExt::internal::CellFacing;
 using BfrExt::internal::CellGrid;
 using BfrExt::internal::CellMeasures;
 using BfrExt::internal::CellRules;
@@ -1075,7 +1076,7 @@ std::array<double, 2> sampleHeights(CellValues const &values, int numSteps) {
     return range;
 }
 
-/// Calls function(cell, measures) for cells of a base face up to level 3, which are measured as for a view.
+/// Calls function(cell, measures, facing) for cells of a base face up to level 3, which are measured as for a view.
 template <typename FUNCTION>
 void forMeasuredCells(RefinedCells &refined, FUNCTION const &function) {
     std::vector<double> samples;
@@ -1086,10 +1087,20 @@ void forMeasuredCells(RefinedCells &refined, FUNCTION const &function) {
         std::vector<CellMeasures> children(std::size_t(grid.GetNumChildren()));
         grid.Measure(samples, own);
         grid.MeasureChildren(samples, own, false, children.data());
-        function(cell, own);
+        auto const visit = [&](std::size_t part, int number, CellMeasures const &measures) {
+            std::vector<Vector3> normals(std::size_t(refined[part].GetType().GetNumCorners()));
+            for (std::size_t i = 0; i < normals.size(); ++i) {
+                Vector3 du;
+                Vector3 dv;
+                refined.EvaluateCorner(part, int(i), du.data(), dv.data());
+                normals[i] = Cross(du, dv);
+            }
+            function(part, measures, grid.FindFacing(samples, number, std::move(normals)));
+        };
+        visit(cell, 0, own);
         std::size_t const first = refined.GetFirstChild(cell);
         for (std::size_t i = 0; i < children.size(); ++i) {
-            function(first + i, children[i]);
+            visit(first + i, int(i) + 1, children[i]);
         }
     };
     measure(RefinedCells::kBase);
@@ -1121,7 +1132,8 @@ TEST(View, ThicknessIsCloseToThatOfTheSurface) {
             for (int face = 0; face < numFaces; ++face) {
                 RefinedCells refined;
                 cells.Make(face, refined);
-                forMeasuredCells(refined, [&](std::size_t cell, CellMeasures const &measures) {
+                forMeasuredCells(refined, [&](std::size_t cell, CellMeasures const &measures,
+                                              CellFacing const &) {
                     std::array<double, 2> const sampled = sampleHeights(refined[cell], 3);
                     double const size = sampled[1] - sampled[0];
                     if (size > 1e-6) {
@@ -1164,11 +1176,12 @@ TEST(View, BallsHoldTheSurface) {
                 BaseCells cells(*refiner, shape.positions);
                 RefinedCells refined;
                 cells.Make(face, refined);
-                forMeasuredCells(refined, [&](std::size_t cell, CellMeasures const &measures) {
+                forMeasuredCells(refined, [&](std::size_t cell, CellMeasures const &measures,
+                                              CellFacing const &) {
+                    BfrExt::internal::Ball const ball = measures.GetOuterBall();
                     forDescendants(refined[cell], 3, [&](CellValues const &part) {
                         for (Vector3 const &p : getCorners(part)) {
-                            largest = std::max(largest, GetDistance(p, measures.ball.center) /
-                                                            measures.ball.radius);
+                            largest = std::max(largest, GetDistance(p, ball.center) / ball.radius);
                         }
                     });
                 });
@@ -1178,6 +1191,52 @@ TEST(View, BallsHoldTheSurface) {
     }
     std::cout << "points are up to " << largest << " radii from the centers of balls\n";
     EXPECT_GT(largest, 0.8);
+}
+
+// Surfaces that are folded, by flaws of the meshes and where they are not smooth.
+TEST(View, NormalsAreWhereCellsFace) {
+    double largest = 0; // tangent of an angle to the cell's normal, by what it may be
+    for (char const *const name : {"bowTieOfFans", "closedBowTie", "degenerateTriangle",
+                                   "finWithCrease", "tetrahedraOnEdge", "texturedFin"}) {
+        for (auto const mask :
+             {ReferenceMask::Smooth, ReferenceMask::Cosine, ReferenceMask::Average}) {
+            SCOPED_TRACE(testing::Message() << name << ", " << ToString(mask));
+            Shape const &shape = GetFeatureShape(name);
+            auto const refiner = makeRefiner(shape, mask);
+            BaseCells cells(*refiner, shape.positions);
+            for (int face = 0; face < shape.GetNumFaces(); ++face) {
+                RefinedCells refined;
+                cells.Make(face, refined);
+                forMeasuredCells(refined, [&](std::size_t cell, CellMeasures const &,
+                                              CellFacing const &facing) {
+                    if (cell == RefinedCells::kBase || !std::isfinite(facing.spread)) {
+                        return;
+                    }
+                    forDescendants(refined[cell], 3, [&](CellValues const &part) {
+                        for (int i = 0; i < part.GetType().GetNumCorners(); ++i) {
+                            Vector3 du;
+                            Vector3 dv;
+                            part.EvaluateCorner(i, du.data(), dv.data());
+                            Vector3 const normal = Cross(du, dv);
+                            if (GetLength(normal) <= 1e-6 * GetLength(du) * GetLength(dv)) {
+                                continue; // a needle
+                            }
+                            double const height = Dot(normal, facing.normal);
+                            ASSERT_GT(height, 0) << "face " << face << ", cell " << cell;
+                            double const across =
+                                GetLength(Subtract(normal, Scale(facing.normal, height)));
+                            constexpr double kRounding = 1e-4;
+                            largest =
+                                std::max(largest, across / height / (facing.spread + kRounding));
+                        }
+                    });
+                });
+                ASSERT_LT(largest, 1) << "face " << face;
+            }
+        }
+    }
+    std::cout << "normals lean over by up to " << largest << " times what they may\n";
+    EXPECT_GT(largest, 0.5);
 }
 
 namespace {
