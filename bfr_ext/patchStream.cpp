@@ -64,7 +64,7 @@ public:
         : factory(ofMesh), levels(std::move(ofFaces)), forest(ofTrees), options(ofStream),
           plans(options.HasDerivatives(), options.GetMaxMemory()) {}
 
-    void GetLevels(Index face, FaceLevels &result) const;
+    void GetLevels(Index face, std::vector<int> &result) const;
     bool GetKey(Index face, std::vector<int> &key) const;
     LevelTessellation MakeWhole(Index face) const;
     std::unique_ptr<FaceSections const> MakeSections(Index face) const;
@@ -79,21 +79,20 @@ public:
 
 private:
     CallStatus checkFaces(AskedFaces const &faces) const;
-    CallStatus checkFace(Index face, FaceLevels &ofFace) const;
+    CallStatus checkFace(Index face, std::vector<int> &ofFace) const;
     Index takeFaces(AskedFaces const &faces, Index next, std::vector<PatchOfFace> &patches) const;
 };
 
 namespace internal {
 
 // Writes the levels of the edges, then that of the inside.
-void StreamData::GetLevels(Index face, FaceLevels &result) const {
+void StreamData::GetLevels(Index face, std::vector<int> &result) const {
     FarExt::SurfaceFaces const &faces = factory.GetFaces();
-    result.shape = faces.GetShape(face);
-    result.levels.clear();
-    for (int local = 0; local < result.shape.size; ++local) {
-        result.levels.push_back(levels.GetEdgeLevel(faces.GetEdge(face, local).edge));
+    result.clear();
+    for (int local = 0; local < faces.GetShape(face).size; ++local) {
+        result.push_back(levels.GetEdgeLevel(faces.GetEdge(face, local).edge));
     }
-    result.levels.push_back(levels.GetFaceLevel(face));
+    result.push_back(levels.GetFaceLevel(face));
 }
 
 // Writes numbers that tell the tessellation of a face, and returns whether others are likely to have the same.
@@ -107,12 +106,8 @@ bool StreamData::GetKey(Index face, std::vector<int> &key) const {
         forest->GetTessellationKey(face, key);
         return true;
     }
-    FarExt::SurfaceFaces const &faces = factory.GetFaces();
-    FarExt::FaceShape const shape = faces.GetShape(face);
-    key = {shape.isHalf ? 1 : 0, levels.GetFaceLevel(face)};
-    for (int local = 0; local < shape.size; ++local) {
-        key.push_back(levels.GetEdgeLevel(faces.GetEdge(face, local).edge));
-    }
+    GetLevels(face, key);
+    key.push_back(factory.GetFaces().GetShape(face).isHalf ? 1 : 0);
     return true;
 }
 
@@ -120,10 +115,10 @@ LevelTessellation StreamData::MakeWhole(Index face) const {
     if (forest) {
         return forest->GetTessellation(face, options.GetTessellationOptions());
     }
-    FaceLevels ofFace;
+    std::vector<int> ofFace;
     GetLevels(face, ofFace);
-    return LevelTessellation(Parameterization(ofFace.shape), int(ofFace.levels.size()),
-                             ofFace.levels.data(), options.GetTessellationOptions());
+    return LevelTessellation(factory.GetFaceParameterization(face), int(ofFace.size()),
+                             ofFace.data(), options.GetTessellationOptions());
 }
 
 // The sections of a face that comes in some; null for others.
@@ -135,8 +130,8 @@ std::unique_ptr<FaceSections const> StreamData::MakeSections(Index face) const {
                                        tree, forest->GetFacePolylines(face), maxLeaves)
                                  : nullptr;
     }
-    FaceLevels ofFace;
-    GetLevels(face, ofFace);
+    FaceLevels ofFace = {factory.GetFaces().GetShape(face), {}};
+    GetLevels(face, ofFace.levels);
     return plans.IsCut(ofFace) ? std::make_unique<FaceSections const>(ofFace, maxLeaves) : nullptr;
 }
 
@@ -156,7 +151,7 @@ Far::Index StreamData::takeFaces(AskedFaces const &faces, Index next,
     std::vector<int> key;
     std::vector<int> lastKey;
     KnownPlan plan = {};
-    FaceLevels ofFace;
+    std::vector<int> ofFace;
     std::size_t memory = 0;
     patches.clear();
     for (; next < faces.GetCount() && patches.size() < maxNumPatches; ++next) {
@@ -217,8 +212,8 @@ CallStatus StreamData::checkFaces(AskedFaces const &faces) const {
     std::atomic<Index> firstBad(faces.GetCount());
     CallStatus result;
     FarExt::internal::ParallelForRange(
-        faces.GetCount(), [] { return FaceLevels(); },
-        [&](FaceLevels &ofFace, Index begin, Index end) {
+        faces.GetCount(), [] { return std::vector<int>(); },
+        [&](std::vector<int> &ofFace, Index begin, Index end) {
             for (Index i = begin; i < end && i < firstBad; ++i) {
                 if (base.IsHole(faces[i])) {
                     continue;
@@ -238,7 +233,7 @@ CallStatus StreamData::checkFaces(AskedFaces const &faces) const {
     return result;
 }
 
-CallStatus StreamData::checkFace(Index face, FaceLevels &ofFace) const {
+CallStatus StreamData::checkFace(Index face, std::vector<int> &ofFace) const {
     CallStatus status = factory.CheckFace(face);
     if (!status.IsOk()) {
         return status;
@@ -260,15 +255,15 @@ CallStatus StreamData::checkFace(Index face, FaceLevels &ofFace) const {
                               std::to_string(level) + ", which is not one of 0 to " +
                               std::to_string(LevelTessellation::kLastLevel));
     };
-    int const ofInside = ofFace.levels.back();
+    int const ofInside = ofFace.back();
     if (!isLevel(ofInside)) {
         return refuse(ofInside, ComponentType::Face, "face", face);
     }
-    auto const bad = std::find_if_not(ofFace.levels.begin(), ofFace.levels.end(), isLevel);
-    if (bad == ofFace.levels.end()) {
+    auto const bad = std::find_if_not(ofFace.begin(), ofFace.end(), isLevel);
+    if (bad == ofFace.end()) {
         return CallStatus();
     }
-    Index const edge = factory.GetFaces().GetEdge(face, int(bad - ofFace.levels.begin())).edge;
+    Index const edge = factory.GetFaces().GetEdge(face, int(bad - ofFace.begin())).edge;
     return refuse(*bad, ComponentType::Edge, "edge", edge);
 }
 
@@ -364,7 +359,7 @@ private:
     }
 
     StreamData const &_stream;
-    internal::FaceLevels _levels;
+    std::vector<int> _levels;
     std::vector<int> _key;
     std::vector<int> _planKey;
     int _planSection = -1;

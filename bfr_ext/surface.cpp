@@ -27,11 +27,6 @@ void bound(int numPoints, REAL const *points, Far::Index const *indices,
     }
 }
 
-template <typename REAL>
-void copyWeights(std::vector<double> const &from, REAL *to) {
-    std::transform(from.begin(), from.end(), to, [](double weight) { return REAL(weight); });
-}
-
 } // namespace
 
 template <typename REAL>
@@ -202,24 +197,23 @@ int Surface<REAL>::evaluateStencil(REAL const uv[2], int numDerivatives,
         _parameterization, GetFaceShape(), {double(uv[0]), double(uv[1])}, tolerance);
     CellStencil stencil(*GetFace().type);
     stencil.Find(place.point, numDerivatives > 0);
-    copyWeights(stencil.GetWeights(), weights[0]);
-    if (numDerivatives == 0) {
-        return GetNumControlPoints();
-    }
-    std::vector<double> rows[5] = {stencil.GetDuWeights(), stencil.GetDvWeights()};
-    if (numDerivatives > 1) {
+    bool const hasSecond = numDerivatives > 1;
+    if (hasSecond) {
         stencil.FindSecond(place.point);
-        rows[2] = stencil.GetDuuWeights();
-        rows[3] = stencil.GetDuvWeights();
-        rows[4] = stencil.GetDvvWeights();
     }
-    if (_parameterization.HasSubFaces()) {
-        double *const first[2] = {rows[0].data(), rows[1].data()};
-        double *const second[3] = {rows[2].data(), rows[3].data(), rows[4].data()};
-        internal::ToUv(place, rows[0].size(), first, numDerivatives > 1 ? second : nullptr);
+    std::size_t const numRows = numDerivatives == 0 ? 1 : hasSecond ? 6 : 3;
+    std::vector<double> rows[6];
+    for (std::size_t kind = 0; kind < numRows; ++kind) {
+        rows[kind] = stencil.GetWeights(kind);
     }
-    for (std::size_t i = 0; i < (numDerivatives > 1 ? 5 : 2); ++i) {
-        copyWeights(rows[i], weights[1 + i]);
+    if (numDerivatives > 0 && _parameterization.HasSubFaces()) {
+        double *const first[2] = {rows[1].data(), rows[2].data()};
+        double *const second[3] = {rows[3].data(), rows[4].data(), rows[5].data()};
+        internal::ToUv(place, rows[1].size(), first, hasSecond ? second : nullptr);
+    }
+    for (std::size_t kind = 0; kind < numRows; ++kind) {
+        std::transform(rows[kind].begin(), rows[kind].end(), weights[kind],
+                       [](double weight) { return REAL(weight); });
     }
     return GetNumControlPoints();
 }

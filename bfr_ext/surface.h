@@ -65,7 +65,8 @@ private:
 ///    level 3, or of SurfaceFactory::Options::SetApproxLevelSmooth().  Patches have the limit points and tangent planes at
 ///    the corners of cells.  Neighbours, in other faces, too, have equal points and tangent planes along their common edge,
 ///    except for rounding.  With FaceMask::Smooth at level 3, points lie 2e-6 of a model's size from the surface (rms), and
-///    normals deviate by 0.1 to 0.2 degrees; each further level divides these by 8 and 3.  Near extraordinary base
+///    normals deviate by 0.1 to 0.2 degrees; each further level divides these by 8 and 3.  Derivatives are OpenSubdiv's of a
+///    Gregory patch: as if its points inside of corners, which (u, v) blends, were fixed.  Near extraordinary base
 ///    vertices, where cells do not shrink by 1/2, points are shifted along the surface by up to a hundredth of a face.
 ///  - **Tessellations and stencils** are exact at vertices of any level (FarExt::TopologyLevel::GetFaceSurfaceCoords()), as
 ///    limit stencil tables are.  Elsewhere the cells around (u, v) are refined until the surface between the corners of a
@@ -137,7 +138,7 @@ public:
     /// around its vertex, because each fan is refined apart.
     /// \return  GetNumControlPoints()
     int GetControlPointIndices(Index meshPointIndices[]) const;
-    /// Copies the control points from those of the mesh.
+    /// Copies the control points from those of the mesh, of either precision.
     template <typename REAL_MESH>
     void GatherControlPoints(REAL_MESH const meshPoints[], PointDescriptor const &meshPointDesc,
                              REAL controlPoints[], PointDescriptor const &controlPointDesc) const {
@@ -176,14 +177,16 @@ public:
 
     /// @name Patch points
     /// The points that Evaluate() at (u, v) takes, of which patches are weighted sums: the control points and, but for faces in
-    /// regular lattices of quads, triangles or hexagons, some 250 points of the second level behind them.  Types of faces share
-    /// the weights.  Make the points once for those of a mesh; they serve any number of evaluations of this surface.
+    /// regular lattices of quads, triangles or hexagons, 150 to 280 points of the first or second level behind them (of a face of
+    /// n vertices about n * n).  Types of faces share the weights.  Make the points once for those of a mesh; they serve any
+    /// number of evaluations of this surface.
     /// @{
 
-    /// Control points, and those of the second level where the face needs them.
+    /// Control points, and those of a later level where the face needs them.
     int GetNumPatchPoints() const;
-    /// Copies the control points from those of the mesh, and computes the others.
-    void PreparePatchPoints(REAL const meshPoints[], PointDescriptor const &meshPointDesc,
+    /// Copies the control points from those of the mesh, of either precision, and computes the others.
+    template <typename REAL_MESH>
+    void PreparePatchPoints(REAL_MESH const meshPoints[], PointDescriptor const &meshPointDesc,
                             REAL patchPoints[], PointDescriptor const &patchPointDesc) const {
         GatherControlPoints(meshPoints, meshPointDesc, patchPoints, patchPointDesc);
         ComputePatchPoints(patchPoints, patchPointDesc);

@@ -34,16 +34,10 @@ SurfacePlaces<REAL>::Create(SurfaceFactory const &factory, int numPlaces, Index 
     std::unique_ptr<SurfacePlaces> places(new SurfacePlaces());
     places->_numbers.reserve(order.size());
     places->_uvs.reserve(2 * order.size());
-    auto const init = [&](Index face, Surface<REAL> &surface) {
-        switch (options.interpolationMode) {
-        case FarExt::INTERPOLATE_VERTEX:
-            return factory.InitVertexSurface(face, &surface, status);
-        case FarExt::INTERPOLATE_VARYING:
-            return factory.InitVaryingSurface(face, &surface, status);
-        default:
-            return factory.InitFaceVaryingSurface(face, &surface, options.fvarChannel, status);
-        }
-    };
+    FarExt::Interpolation const interpolation = FarExt::internal::GetModeInterpolation(
+        factory.GetMesh(), options.interpolationMode, options.fvarChannel);
+    int const channel =
+        options.interpolationMode == FarExt::INTERPOLATE_FACE_VARYING ? options.fvarChannel : -1;
     Index lastFace = Far::INDEX_INVALID;
     for (Index const number : order) {
         Index const face = faces[number];
@@ -51,7 +45,9 @@ SurfacePlaces<REAL>::Create(SurfaceFactory const &factory, int numPlaces, Index 
             lastFace = face;
             places->_firstPlaces.push_back(Index(places->_numbers.size()));
             places->_surfaces.emplace_back();
-            if (!init(face, places->_surfaces.back())) {
+            CallStatus const found =
+                factory.TryInit(face, interpolation, channel, places->_surfaces.back());
+            if (!FarExt::internal::Report(found, status)) {
                 return nullptr;
             }
         }

@@ -13,7 +13,6 @@
 #include <array>
 #include <atomic>
 #include <cmath>
-#include <functional>
 #include <limits>
 
 namespace OpenSubdivHex::BfrExt {
@@ -109,36 +108,37 @@ private:
     double _largestSecant = 1; // of the angles between the axis and what is in the picture
 };
 
-/// A base face with its control points, of three numbers each.
+/// The faces of a mesh in turn, with their control points, of three numbers each.
 class FaceToMeasure {
 public:
-    /// \param points  of the mesh
-    /// \param shared  rings that faces share
-    void Set(BaseFace const &face, PointArray const &points, SharedRings<float> &shared) {
-        _face = &face;
-        _sources = {points.floats, points.stride,    3,      std::size_t(face.numPoints),
-                    nullptr,       face.GetPoints(), &shared};
-        _points.resize(3 * std::size_t(face.numPoints));
-        for (int i = 0; i < face.numPoints; ++i) {
-            Vector3 const point = points[face.GetPoints()[i]];
-            std::copy(point.begin(), point.end(), &_points[3 * std::size_t(i)]);
+    FaceToMeasure(SurfaceFactory const &factory, PointArray const &meshPoints)
+        : _factory(factory), _meshPoints(meshPoints) {}
+
+    /// Goes to a face; false where that has no surface.
+    bool Set(Far::Index face) {
+        if (face != _number) {
+            _number = face;
+            _surface.Clear();
+            if (_factory.TryInit(face, FarExt::Interpolation::Vertex, -1, _surface).IsOk()) {
+                gather();
+            }
         }
+        return _surface.IsValid();
     }
 
-    BaseType const &GetType() const { return _face->type; }
-    FaceShape GetShape() const { return GetType().GetShape(_face->size); }
+    BaseType const &GetType() const { return _surface.GetFace().type; }
     void SetCells(RefinedCells &cells) const { cells.SetBase(GetType(), _points.data(), 3); }
     void Sample(CellGrid &grid, std::vector<double> &samples) const {
-        grid.Sample(*_face, _points.data(), _sources, samples);
+        grid.Sample(_surface.GetFace(), _points.data(), _sources, samples);
     }
     /// Whether the hull of its points is outside of the picture, which contains the surface.
     bool IsOutside(ViewGeometry const &geometry) const {
-        return geometry.IsOutside(_points.data(), 3, _face->numPoints);
+        return geometry.IsOutside(_points.data(), 3, _surface.GetNumControlPoints());
     }
     /// An edge of it, with its points.
     CellType::BorderItem const &SetEdge(int edge, CellValues &values) const {
         CellType::BorderItem const &item =
-            GetType()->GetBorderItem(_face->GetTurns(), std::size_t(edge));
+            GetType()->GetBorderItem(_surface.GetFace().GetTurns(), std::size_t(edge));
         std::vector<double> points;
         for (int const point : item.points) {
             auto const first = _points.begin() + 3 * std::ptrdiff_t(point);
@@ -149,7 +149,27 @@ public:
     }
 
 private:
-    BaseFace const *_face = nullptr;
+    void gather() {
+        BaseFace const &face = _surface.GetFace();
+        _sources = {_meshPoints.floats,
+                    _meshPoints.stride,
+                    3,
+                    std::size_t(face.numPoints),
+                    nullptr,
+                    face.GetPoints(),
+                    &_shared};
+        _points.resize(3 * std::size_t(face.numPoints));
+        for (int i = 0; i < face.numPoints; ++i) {
+            Vector3 const point = _meshPoints[face.GetPoints()[i]];
+            std::copy(point.begin(), point.end(), &_points[3 * std::size_t(i)]);
+        }
+    }
+
+    SurfaceFactory const &_factory;
+    PointArray const _meshPoints;
+    Far::Index _number = Far::INDEX_INVALID;
+    Surface<float> _surface;
+    SharedRings<float> _shared;
     RingSources<float> _sources = {}; // none of points in double precision
     std::vector<double> _points;
 };
@@ -162,12 +182,12 @@ namespace {
 /// children where they are not expected to be flat.
 class TreeMaker {
 public:
-    /// \param getBase   is called where something is not known
+    /// \param base      goes to the face where something is not known
     /// \param measures  those of the face, which it adds to
-    TreeMaker(ViewGeometry const &geometry, View::Options const &options,
-              std::function<FaceToMeasure const &()> const &getBase, FaceMeasures &measures,
-              CellTree const *previous, CellTree &tree, std::vector<CellVisibility> *visibility)
-        : _geometry(geometry), _options(options), _getBase(getBase), _measures(measures),
+    TreeMaker(ViewGeometry const &geometry, View::Options const &options, FaceToMeasure &base,
+              Far::Index face, FaceMeasures &measures, CellTree const *previous, CellTree &tree,
+              std::vector<CellVisibility> *visibility)
+        : _geometry(geometry), _options(options), _base(base), _face(face), _measures(measures),
           _previous(previous), _tree(tree), _visibility(visibility) {}
 
     void Make() {
@@ -231,6 +251,11 @@ private:
         return node.isWhole ? _tree.GetFaceShape().GetNumSectors() + 1 : 4;
     }
 
+    FaceToMeasure const &getBase() {
+        _base.Set(_face);
+        return _base;
+    }
+
     CellMeasures &getMeasures(Node const &node) { return _measures.cells[node.measures]; }
 
     int findChildren(Node const &node) {
@@ -243,7 +268,7 @@ private:
 
     std::size_t makeCell(Node &node) {
         if (node.cell == kNotMade && !node.parent) {
-            _getBase().SetCells(_cells);
+            getBase().SetCells(_cells);
             node.cell = RefinedCells::kBase;
         } else if (node.cell == kNotMade) {
             node.cell = _cells.GetFirstChild(makeCell(*node.parent)) + std::size_t(node.child);
@@ -296,8 +321,8 @@ private:
             _isSharp = _cells[cell].GetType().IsSharp();
             _grid->Sample(_cells[cell], _samples);
         } else {
-            _isSharp = _getBase().GetType().IsSharp();
-            _getBase().Sample(*_grid, _samples);
+            _isSharp = getBase().GetType().IsSharp();
+            getBase().Sample(*_grid, _samples);
         }
     }
 
@@ -311,8 +336,8 @@ private:
     // Whole faces, which may be folded, never face away, and are outside where their edges are.
     CellVisibility find(Node &node) {
         if (!node.parent) {
-            return _getBase().IsOutside(_geometry) ? CellVisibility::Outside
-                                                   : CellVisibility::Visible;
+            return getBase().IsOutside(_geometry) ? CellVisibility::Outside
+                                                  : CellVisibility::Visible;
         }
         if (_geometry.IsOutside(measure(node).ball)) {
             return CellVisibility::Outside;
@@ -337,7 +362,8 @@ private:
 
     ViewGeometry const &_geometry;
     View::Options const &_options;
-    std::function<FaceToMeasure const &()> const &_getBase;
+    FaceToMeasure &_base;
+    Far::Index const _face;
     FaceMeasures &_measures;
     CellTree const *const _previous;
     CellTree &_tree;
@@ -556,33 +582,6 @@ struct ViewData {
 
 namespace {
 
-// The surface of one face after the other, with its control points.
-class FaceSurface {
-public:
-    FaceSurface(SurfaceFactory const &factory, PointArray const &meshPoints)
-        : _factory(factory), _meshPoints(meshPoints) {}
-
-    // Null where there is none.
-    FaceToMeasure const *Find(Far::Index face) {
-        if (face != _face) {
-            _face = face;
-            _surface.Clear();
-            if (_factory.TryInit(face, FarExt::Interpolation::Vertex, -1, _surface).IsOk()) {
-                _base.Set(_surface.GetFace(), _meshPoints, _shared);
-            }
-        }
-        return _surface.IsValid() ? &_base : nullptr;
-    }
-
-private:
-    SurfaceFactory const &_factory;
-    PointArray const _meshPoints;
-    Far::Index _face = Far::INDEX_INVALID;
-    Surface<float> _surface;
-    SharedRings<float> _shared;
-    FaceToMeasure _base;
-};
-
 // Counts the cells of a forest that are not refined.
 void countCells(CellForest const &forest, int maxLevel, View::Counts &counts) {
     counts.cellsByLevel.assign(std::size_t(maxLevel) + 1, 0);
@@ -657,7 +656,7 @@ CellForest View::makeForest(SurfaceFactory const &factory, ViewBounds *viewBound
     }
     // A tree grows in the memory of the last one, and is kept in no more than it takes.
     struct State {
-        internal::FaceSurface surface;
+        internal::FaceToMeasure base;
         internal::FaceMeasures measures;
         CellTree tree;
     };
@@ -674,7 +673,7 @@ CellForest View::makeForest(SurfaceFactory const &factory, ViewBounds *viewBound
                 state.measures.Clear();
                 internal::FaceMeasures &measures =
                     bounds ? bounds->faces[std::size_t(face)] : state.measures;
-                if (measures.cells.empty() && !state.surface.Find(face)) {
+                if (measures.cells.empty() && !state.base.Set(face)) {
                     Index first = firstWithout;
                     while (!faces.IsHole(face) && face < first &&
                            !firstWithout.compare_exchange_weak(first, face)) {
@@ -682,18 +681,15 @@ CellForest View::makeForest(SurfaceFactory const &factory, ViewBounds *viewBound
                     continue;
                 }
                 std::size_t const memory = measures.GetMemory();
-                auto const getBase = [&]() -> internal::FaceToMeasure const & {
-                    return *state.surface.Find(face);
-                };
                 state.tree = forest.GetTree(face);
                 bool const hasLastTree =
                     last && last->GetTree(face).GetFaceShape() == state.tree.GetFaceShape();
                 std::vector<CellVisibility> *const visibility =
                     counts ? &counts->visibilities[std::size_t(face)] : nullptr;
                 if (IsValid()) {
-                    internal::TreeMaker(_data->geometry, _data->options, std::cref(getBase),
-                                        measures, hasLastTree ? &last->GetTree(face) : nullptr,
-                                        state.tree, visibility)
+                    internal::TreeMaker(_data->geometry, _data->options, state.base, face, measures,
+                                        hasLastTree ? &last->GetTree(face) : nullptr, state.tree,
+                                        visibility)
                         .Make();
                 }
                 if (visibility) {
@@ -710,12 +706,12 @@ CellForest View::makeForest(SurfaceFactory const &factory, ViewBounds *viewBound
                     // The first of its faces that has a surface makes an edge, since holes have none.
                     if (!isInfSharp(edge) ||
                         (isReversed && factory.FaceHasLimitSurface(faces.GetSide(edge, 0).face)) ||
-                        !state.surface.Find(face)) {
+                        !state.base.Set(face)) {
                         continue;
                     }
                     internal::CellValues values;
                     bool const isTurned =
-                        isReversed != state.surface.Find(face)->SetEdge(local, values).isReversed;
+                        isReversed != state.base.SetEdge(local, values).isReversed;
                     auto const turn = [&](Polyline const &polyline) {
                         return isTurned ? polyline.GetReversed() : polyline;
                     };

@@ -49,25 +49,14 @@ BfrPlace MoveToChild(BfrPlace const &place, CellStep const &step, FaceShape shap
 /// \param second  null, or three rows: of the first coordinate twice, of both, and of the second twice
 template <typename REAL>
 void ToUv(BfrPlace const &place, std::size_t size, REAL *const first[2], REAL *const second[3]) {
-    Pair const &x = place.toOwn[0];
-    Pair const &y = place.toOwn[1];
-    for (std::size_t i = 0; i < size; ++i) {
-        double const by[2] = {double(first[0][i]), double(first[1][i])};
-        for (std::size_t k = 0; k < 2; ++k) {
-            first[k][i] = REAL(x[k] * by[0] + y[k] * by[1]);
-        }
-        if (second) {
-            double const twice[3] = {double(second[0][i]), double(second[1][i]),
-                                     double(second[2][i])};
-            auto const change = [&](std::size_t k, std::size_t l) {
-                return x[k] * x[l] * twice[0] + (x[k] * y[l] + y[k] * x[l]) * twice[1] +
-                       y[k] * y[l] * twice[2];
-            };
-            second[0][i] = REAL(change(0, 0));
-            second[1][i] = REAL(change(0, 1) + place.mixed[0] * by[0] + place.mixed[1] * by[1]);
-            second[2][i] = REAL(change(1, 1));
+    if (second) {
+        TurnSecondDerivatives(place.toOwn, size, second);
+        for (std::size_t i = 0; i < size; ++i) {
+            second[1][i] +=
+                REAL(place.mixed[0] * double(first[0][i]) + place.mixed[1] * double(first[1][i]));
         }
     }
+    TurnDerivatives(place.toOwn, size, first[0], first[1], first[0], first[1]);
 }
 
 } // namespace OpenSubdivHex::BfrExt::internal

@@ -7,21 +7,21 @@
 namespace OpenSubdivHex::BfrExt::internal {
 
 // Coordinates of names are not below zero.
-std::uint64_t CellMesh::getKey(SectorPlace<Place> const &name) {
+std::uint64_t CellMesh::getKey(Vertex const &name) {
     static_assert(CellShape::kBits < 20);
     return std::uint64_t(name.sector) << 40 | std::uint64_t(name.coords[0]) << 20 |
            std::uint64_t(name.coords[1]);
 }
 
 int CellMesh::Find(int sector, Place const &place) const {
-    auto const found = _numbers.find(getKey(NameOf(_shape, SectorPlace<Place>{sector, place})));
+    auto const found = _numbers.find(getKey(NameOf(_shape, Vertex{sector, place})));
     return found == _numbers.end() ? -1 : found->second;
 }
 
-void CellMesh::add(SectorPlace<Place> const &place) {
-    SectorPlace<Place> const name = NameOf(_shape, place);
+void CellMesh::add(Vertex const &place) {
+    Vertex const name = NameOf(_shape, place);
     if (_numbers.emplace(getKey(name), int(_verts.size())).second) {
-        _verts.push_back({name.sector, name.coords[0], name.coords[1]});
+        _verts.push_back(name);
     }
 }
 

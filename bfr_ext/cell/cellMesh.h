@@ -16,15 +16,10 @@ namespace OpenSubdivHex::BfrExt::internal {
 /// sides.
 class CellMesh {
 public:
-    /// A vertex: its sector and the coordinates a and b there, in units of 2^-kBits, by NameOf().
-    struct Vertex {
-        int sector;
-        std::int32_t a;
-        std::int32_t b;
-
-        SectorPlace<CellShape::Place> GetPlace() const { return {sector, {a, b}}; }
-    };
+    /// Coordinates in a sector, in units of 2^-kBits.
     using Place = CellShape::Place;
+    /// A vertex, by the one name of its place, NameOf().
+    using Vertex = SectorPlace<Place>;
 
     /// \param tree     must live as long
     /// \param edges    by edge of the face, in its direction; with all points that the tree has there
@@ -58,8 +53,8 @@ public:
     std::vector<Polygon> GetMergedPolygons() const;
 
 private:
-    static std::uint64_t getKey(SectorPlace<Place> const &name);
-    void add(SectorPlace<Place> const &place);
+    static std::uint64_t getKey(Vertex const &name);
+    void add(Vertex const &place);
     template <typename FUNCTION>
     void visit(CellShape const &cell, int level, FUNCTION const &function) const;
     template <typename FUNCTION>

@@ -176,12 +176,13 @@ void CellStencil::addCorner(Place const &place, std::size_t corner, double weigh
 }
 
 // Takes the steps back, and from derivatives what rounding has left.
-void CellStencil::finish(std::vector<double> *derivatives, std::size_t numDerivatives) {
-    for (std::size_t i = 0; i < numDerivatives; ++i) {
-        goBack(_steps, _of, derivatives[i], _scratch);
+void CellStencil::finish(std::size_t firstKind, std::size_t endKind) {
+    for (std::size_t kind = firstKind; kind < endKind; ++kind) {
+        std::vector<double> &weights = _weights[kind];
+        goBack(_steps, _of, weights, _scratch);
         // Steps shrink all that rounding has left of differences between near points but their sum.
-        double const sum = std::accumulate(derivatives[i].begin(), derivatives[i].end(), 0.0);
-        add(derivatives[i], -sum, _weights[0]);
+        double const sum = std::accumulate(weights.begin(), weights.end(), 0.0);
+        add(weights, -sum, _weights[0]);
     }
 }
 
@@ -210,7 +211,7 @@ void CellStencil::Find(BasePoint const &point, bool hasDerivatives) {
         }
     }
     goBack(_steps, _of, _weights[0], _scratch);
-    finish(_weights + 1, hasDerivatives ? 2 : 0);
+    finish(1, hasDerivatives ? 3 : 1);
     if (rootCorner >= 0) {
         _weights[1].assign(_weights[0].size(), 0.0);
         _weights[2] = _weights[1];
@@ -228,25 +229,25 @@ void CellStencil::FindSecond(BasePoint const &point) {
                : place.depth < kDepthOfDifferences) {
         takeStep(place);
     }
-    for (std::vector<double> &row : _secondWeights) {
-        row.assign(std::size_t(place.type->GetNumPoints()), 0.0);
+    for (std::size_t kind = 3; kind < std::size(_weights); ++kind) {
+        _weights[kind].assign(std::size_t(place.type->GetNumPoints()), 0.0);
     }
     if (SecondDerivatives::Find(*place.type).Exist()) {
         addSecondAtCorners(place);
     } else {
         addSecondBetweenCorners(place);
     }
-    finish(_secondWeights.data(), _secondWeights.size());
+    finish(3, std::size(_weights));
 }
 
 void CellStencil::addSecondAtCorners(Place const &place) {
     SecondDerivatives const &derivatives = SecondDerivatives::Find(*place.type);
     place.FindCornerWeights(_cornerWeights);
     for (std::size_t corner = 0; corner < _cornerWeights.size(); ++corner) {
-        SecondDerivatives::Rows const byUv =
-            SecondDerivatives::ChangeCoordinates(place.toCoords, derivatives.AtCorner(corner));
+        SecondDerivatives::Rows byUv = derivatives.AtCorner(corner);
+        SecondDerivatives::Turn(place.toCoords, byUv);
         for (std::size_t k = 0; k < byUv.size(); ++k) {
-            add(_secondWeights[k], _cornerWeights[corner], byUv[k]);
+            add(_weights[3 + k], _cornerWeights[corner], byUv[k]);
         }
     }
 }
@@ -271,10 +272,10 @@ void CellStencil::addSecondBetweenCorners(Place const &place) {
         place.AddDerivatives(i, 1, place.type->GetDerivatives(int(i)).rows, byUv);
         auto const [u, v] = corners[i];
         Pair const slope = {(vv * u - uv * v) / determinant, (uu * v - uv * u) / determinant};
-        add(_secondWeights[0], slope[0], byUv[0]);
-        add(_secondWeights[1], 0.5 * slope[1], byUv[0]);
-        add(_secondWeights[1], 0.5 * slope[0], byUv[1]);
-        add(_secondWeights[2], slope[1], byUv[1]);
+        add(_weights[3], slope[0], byUv[0]);
+        add(_weights[4], 0.5 * slope[1], byUv[0]);
+        add(_weights[4], 0.5 * slope[0], byUv[1]);
+        add(_weights[5], slope[1], byUv[1]);
     }
 }
 

@@ -45,13 +45,9 @@ public:
     /// Finds those of the second derivatives, as sums of points; behind Find() of the same point.
     void FindSecond(BasePoint const &point);
 
-    /// By what they are sums of: weights of the surface's point, and of its derivatives.
-    std::vector<double> const &GetWeights() const { return _weights[0]; }
-    std::vector<double> const &GetDuWeights() const { return _weights[1]; }
-    std::vector<double> const &GetDvWeights() const { return _weights[2]; }
-    std::vector<double> const &GetDuuWeights() const { return _secondWeights[0]; }
-    std::vector<double> const &GetDuvWeights() const { return _secondWeights[1]; }
-    std::vector<double> const &GetDvvWeights() const { return _secondWeights[2]; }
+    /// Weights by what they are sums of, as far as they were found: 0 of the surface's point; 1 and 2 of its derivatives by
+    /// u, by v; from 3 on by u twice, by u and v, by v twice.
+    std::vector<double> const &GetWeights(std::size_t kind) const { return _weights[kind]; }
 
 private:
     // Where a point is in the cells that have it, from the root on.
@@ -80,13 +76,12 @@ private:
     void addCorner(Place const &place, std::size_t corner, double weight, bool hasDerivatives);
     void addSecondAtCorners(Place const &place);
     void addSecondBetweenCorners(Place const &place);
-    void finish(std::vector<double> *derivatives, std::size_t numDerivatives);
+    void finish(std::size_t firstKind, std::size_t endKind);
 
     CellType const &_root;
     StencilOf const _of;
     std::vector<ChildStep const *> _steps;
-    std::vector<double> _weights[3];
-    SecondDerivatives::Rows _secondWeights;
+    std::vector<double> _weights[6];
     std::vector<double> _cornerWeights;
     std::vector<double> _scratch;
 };

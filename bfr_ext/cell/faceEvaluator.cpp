@@ -41,9 +41,11 @@ void FaceEvaluator<REAL>::evaluateSecond(TessellationData const &tessellation, R
         BasePoint const point = MakeBasePoint(_face.type.GetShape(_face.size), sector, coords);
         stencil.Find(point, false);
         stencil.FindSecond(point);
-        sumUp(stencil.GetDuuWeights(), results[3] + result);
-        sumUp(stencil.GetDuvWeights(), results[4] + result);
-        sumUp(stencil.GetDvvWeights(), results[5] + result);
+        for (std::size_t kind = 3; kind < 6; ++kind) {
+            std::vector<double> const &weights = stencil.GetWeights(kind);
+            SumUp(weights.data(), weights.size(), _points.Get(), nullptr, std::size_t(_size),
+                  _points.GetStride(), results[kind] + result);
+        }
         result += resultDesc.stride;
     }
 }

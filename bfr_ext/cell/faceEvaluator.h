@@ -46,10 +46,6 @@ private:
     BorderEvaluator<REAL> &setBorder();
     void evaluateBorder(TessellationData const &tessellation, BorderEvaluator<REAL> &evaluator,
                         REAL *p, PointDescriptor const &resultDesc) const;
-    void sumUp(std::vector<double> const &weights, REAL *result) {
-        SumUp(weights.data(), weights.size(), _points.Get(), nullptr, std::size_t(_size),
-              _points.GetStride(), result);
-    }
 
     BaseFace const &_face;
     int const _size; // of a point

@@ -73,8 +73,7 @@ public:
 
     /// The edge of the face that a vertex lies on, and where; of a vertex of the face that which begins there.
     EdgePlace<int> FindEdge(CellMesh::Vertex const &vertex) const {
-        EdgePlace<std::int32_t> const found =
-            FindOnEdge(GetFaceShape(), vertex.GetPlace(), CellShape::kOne);
+        EdgePlace<std::int32_t> const found = FindOnEdge(GetFaceShape(), vertex, CellShape::kOne);
         return {found.edge, found.end / (CellShape::kOne / Polyline::kLength)};
     }
     /// Whether the line from one vertex to the next of a polygon lies on an edge of the face: that of the

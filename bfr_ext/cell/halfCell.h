@@ -40,6 +40,22 @@ void TurnDerivatives(Pair const (&toCoords)[2], std::size_t size, FROM const *by
     }
 }
 
+/// \brief As TurnDerivatives(), of second derivatives: by the first twice, by both, and by the second twice.
+template <typename REAL>
+void TurnSecondDerivatives(Pair const (&toCoords)[2], std::size_t size, REAL *const by[3]) {
+    auto const &[first, second] = toCoords;
+    constexpr std::size_t kPairs[3][2] = {{0, 0}, {0, 1}, {1, 1}};
+    for (std::size_t k = 0; k < size; ++k) {
+        double const twice[3] = {double(by[0][k]), double(by[1][k]), double(by[2][k])};
+        for (std::size_t row = 0; row < 3; ++row) {
+            auto const [i, j] = kPairs[row];
+            by[row][k] = REAL(first[i] * first[j] * twice[0] +
+                              (first[i] * second[j] + second[i] * first[j]) * twice[1] +
+                              second[i] * second[j] * twice[2]);
+        }
+    }
+}
+
 /// \brief Map of coordinates in one cell to those in another: linear, and a shift.
 struct CellMap {
     Pair Apply(Pair const &p) const {

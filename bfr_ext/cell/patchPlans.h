@@ -32,8 +32,7 @@ public:
     ///
     /// The cells in which the levels of edges take part are counted as if they had that of the inside;
     /// derivatives on an edge follow cells that are there for one or two of its points alone.
-    std::size_t GetSizeOfMaking(FaceLevels const &ofFace) const {
-        std::vector<int> const &levels = ofFace.levels;
+    std::size_t GetSizeOfMaking(std::vector<int> const &levels) const {
         std::size_t const bytes = getBytesOfPlace();
         std::size_t const bytesOnEdge = bytes + (_hasDerivatives ? 700 : 0);
         std::size_t const numCells = (std::size_t(1) << (2 * levels.back())) / 3;
@@ -46,7 +45,7 @@ public:
 
     /// Whether a face with some levels comes in sections.
     bool IsCut(FaceLevels const &levels) const {
-        return isCut(double(GetSizeOfMaking(levels)),
+        return isCut(double(GetSizeOfMaking(levels.levels)),
                      FaceSections::CountLeaves(levels.shape, levels.levels.back()));
     }
     /// Overload for a face with a tree.

@@ -178,8 +178,9 @@ struct PlaceBlock {
 };
 
 /// Calls function(block) for all blocks with places that are wanted.
-template <typename REAL, typename SUMS, typename FUNCTION>
-void forBlocks(PlaceMatrix<REAL> const &matrix, SUMS const &sums, FUNCTION const &function) {
+template <typename REAL, typename FUNCTION>
+void forBlocks(PlaceMatrix<REAL> const &matrix, PlaceSums<REAL> const &sums,
+               FUNCTION const &function) {
     std::size_t const numPlaces = matrix.GetNumPlaces();
     PlaceRun const *run = sums.runs;
     for (std::size_t begin = 0; begin < numPlaces; begin += PlaceMatrix<REAL>::kMaxWidth) {
@@ -195,22 +196,6 @@ void forBlocks(PlaceMatrix<REAL> const &matrix, SUMS const &sums, FUNCTION const
         }
         function(block);
     }
-}
-
-/// Calls function(number, hasIndices, component, block) for all components, as forComponents() does, of all
-/// such blocks.  Whether the points have indices is an integral constant, too.
-template <typename REAL, typename SUMS, typename FUNCTION>
-void forBlockComponents(PlaceMatrix<REAL> const &matrix, SUMS const &sums,
-                        FUNCTION const &function) {
-    forBlocks(matrix, sums, [&](PlaceBlock const &block) {
-        forComponents(sums.size, [&](auto number, std::size_t component) {
-            if (sums.indices) {
-                function(number, std::true_type(), component, block);
-            } else {
-                function(number, std::false_type(), component, block);
-            }
-        });
-    });
 }
 
 /// Writes points of three numbers.
@@ -258,11 +243,15 @@ public:
         : _matrix(matrix), _sums(sums) {}
 
     void Form() {
-        forBlockComponents(
-            _matrix, _sums,
-            [&](auto number, auto hasIndices, std::size_t component, PlaceBlock const &block) {
-                this->template formComponents<number(), hasIndices()>(component, block);
+        forBlocks(_matrix, _sums, [&](PlaceBlock const &block) {
+            forComponents(_sums.size, [&](auto number, std::size_t component) {
+                if (_sums.indices) {
+                    this->template formComponents<number(), true>(component, block);
+                } else {
+                    this->template formComponents<number(), false>(component, block);
+                }
             });
+        });
     }
 
 private:

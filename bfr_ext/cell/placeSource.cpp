@@ -14,7 +14,7 @@ PlaceSource<REAL>::MakeMatrices(std::vector<BfrPlace> const &places, bool hasDer
         return {{MakeMatrix(places.size(),
                             [&](std::size_t row) -> std::vector<double> const & {
                                 stencil.Find(places[row].point, false);
-                                return stencil.GetWeights();
+                                return stencil.GetWeights(0);
                             })},
                 1};
     }
@@ -22,7 +22,7 @@ PlaceSource<REAL>::MakeMatrices(std::vector<BfrPlace> const &places, bool hasDer
     for (BfrPlace const &place : places) {
         stencil.Find(place.point, true);
         std::array<std::vector<double>, 2> &row =
-            rows.emplace_back(std::array{stencil.GetDuWeights(), stencil.GetDvWeights()});
+            rows.emplace_back(std::array{stencil.GetWeights(1), stencil.GetWeights(2)});
         // Vertices of the face have the derivatives of the face.
         if (ringCell && !type->IsWhole() && place.point.coords == HalfCell::kCorners[0]) {
             CellType::Derivatives const &ofFace = type->GetDerivatives(0, GetSources(), true);

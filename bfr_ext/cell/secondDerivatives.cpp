@@ -167,24 +167,6 @@ SecondDerivatives const &SecondDerivatives::Find(CellType const &type) {
         [&] { return SecondDerivatives(type); });
 }
 
-SecondDerivatives::Rows SecondDerivatives::ChangeCoordinates(Pair const (&map)[2],
-                                                             Rows const &rows) {
-    Rows result;
-    constexpr std::size_t kPairs[kNumRows][2] = {{0, 0}, {0, 1}, {1, 1}};
-    for (std::size_t k = 0; k < result.size(); ++k) {
-        auto const [i, j] = kPairs[k];
-        double const factors[] = {map[0][i] * map[0][j],
-                                  map[0][i] * map[1][j] + map[1][i] * map[0][j],
-                                  map[1][i] * map[1][j]};
-        result[k].resize(rows[0].size());
-        for (std::size_t point = 0; point < result[k].size(); ++point) {
-            result[k][point] = factors[0] * rows[0][point] + factors[1] * rows[1][point] +
-                               factors[2] * rows[2][point];
-        }
-    }
-    return result;
-}
-
 SecondDerivatives::SecondDerivatives(CellType const &type) {
     std::vector<Pair> const places =
         type.HasContinuousCurvature() ? findLatticePlaces(type) : std::vector<Pair>();
@@ -203,11 +185,10 @@ SecondDerivatives::SecondDerivatives(CellType const &type) {
         for (std::size_t corner = 0; corner < kNumCorners; ++corner) {
             auto const child = std::size_t(HalfCell::kCornerChildren[corner]);
             Rows const &ofChild = before[std::size_t(HalfCell::kCornersOfChildren[corner])];
-            Rows behindStep;
             for (std::size_t k = 0; k < kNumRows; ++k) {
-                type.GetChildren()[child].step.ApplyLeft(ofChild[k], behindStep[k]);
+                type.GetChildren()[child].step.ApplyLeft(ofChild[k], _rows[corner][k]);
             }
-            _rows[corner] = ChangeCoordinates(HalfCell::kChildren[child].rows, behindStep);
+            Turn(HalfCell::kChildren[child].rows, _rows[corner]);
             fitToQuadratics(quadratics, _rows[corner]);
             largestChange =
                 std::max(largestChange, findLargestChange(before[corner], _rows[corner]));

@@ -32,8 +32,11 @@ public:
     using Rows = std::array<std::vector<double>, kNumRows>;
 
     static SecondDerivatives const &Find(CellType const &type);
-    /// By other coordinates, of which those of \p rows are what \p map says.
-    static Rows ChangeCoordinates(Pair const (&map)[2], Rows const &rows);
+    /// Turns rows by coordinates into those by others, of which these have some derivatives.
+    static void Turn(Pair const (&toCoords)[2], Rows &rows) {
+        double *const by[kNumRows] = {rows[0].data(), rows[1].data(), rows[2].data()};
+        TurnSecondDerivatives(toCoords, rows[0].size(), by);
+    }
 
     /// Whether the type is of such cells.
     bool Exist() const { return !_rows.empty(); }

@@ -279,8 +279,8 @@ std::vector<int> TessellationData::setPlaces(CellMesh const &mesh, std::vector<i
     for (std::size_t place = 0; place < order.size(); ++place) {
         CellMesh::Vertex const &vert = verts[std::size_t(order[place])];
         ofVertices[std::size_t(order[place])] = int(place);
-        Pair const inSector = {std::ldexp(double(vert.a), -CellShape::kBits),
-                               std::ldexp(double(vert.b), -CellShape::kBits)};
+        Pair const inSector = {std::ldexp(double(vert.coords[0]), -CellShape::kBits),
+                               std::ldexp(double(vert.coords[1]), -CellShape::kBits)};
         Pair const coordsOfPlace = FarExt::internal::FindFaceCoords(
             parameterization, polygon, vert.sector, {inSector[0], inSector[1]});
         std::copy(coordsOfPlace.begin(), coordsOfPlace.end(), &coords[2 * place]);
@@ -314,20 +314,19 @@ bool TessellationData::setCells(CellMesh const &mesh,
                                 std::vector<CellMesh::Vertex> const &polygon) {
     std::vector<int> order;
     for (std::size_t i = 0; i < polygon.size(); ++i) {
-        CellMesh::Vertex const &start = polygon[i];
-        CellMesh::Vertex const &end = polygon[(i + 1) % polygon.size()];
+        auto const &[sector, start] = polygon[i];
+        auto const &[endSector, end] = polygon[(i + 1) % polygon.size()];
         firstEdgeCoords.push_back(int(order.size()));
-        order.push_back(mesh.Find(start.sector, {start.a, start.b}));
+        order.push_back(mesh.Find(sector, start));
         // If two vertices lie in different sectors, one of them lies on the line between the sectors.
-        int const size = GetFaceSize();
-        if (start.sector == end.sector) {
-            mesh.AppendBetween(start.sector, {start.a, start.b}, {end.a, end.b}, order);
-        } else if (GetFaceShape().isHalf && start.a == 0 && end.sector == 1 && end.b == 0) {
-            mesh.AppendBetween(end.sector, {-start.b, 0}, {end.a, end.b}, order); // the long edge
-        } else if (end.b == 0 && end.sector == (start.sector + 1) % size) {
-            mesh.AppendBetween(start.sector, {start.a, start.b}, {0, end.a}, order);
+        if (sector == endSector) {
+            mesh.AppendBetween(sector, start, end, order);
+        } else if (GetFaceShape().isHalf && start[0] == 0 && endSector == 1 && end[1] == 0) {
+            mesh.AppendBetween(endSector, {-start[1], 0}, end, order); // the long edge
+        } else if (end[1] == 0 && endSector == (sector + 1) % GetFaceSize()) {
+            mesh.AppendBetween(sector, start, {0, end[0]}, order);
         } else {
-            mesh.AppendBetween(end.sector, {0, start.a}, {end.a, end.b}, order);
+            mesh.AppendBetween(endSector, {0, start[0]}, end, order);
         }
     }
     firstEdgeCoords.push_back(int(order.size()));

@@ -7,6 +7,7 @@
 #include "far_ext/vtr/parallel.h"
 #include "far_ext/vtr/pi.h"
 
+#include <algorithm>
 #include <cmath>
 #include <complex>
 
@@ -67,6 +68,17 @@ bool isCornerForEver(Level const &level, Index vert, std::vector<VertexSide> con
         std::any_of(level.GetVertexEdges(vert).begin(), level.GetVertexEdges(vert).end(),
                     [&](Index edge) { return level.IsBoundary(edge); });
     return !hasSemiSharp || (isOpen ? numBreaks + 2 : numBreaks) > 4;
+}
+
+// The side that begins with the edge, or diagonal, with which another one ends; -1: none.
+int findSideBehind(std::vector<VertexSide> const &sides, VertexSide const &side) {
+    FanItem const &end = side.items.back();
+    auto const found = std::find_if(sides.begin(), sides.end(), [&](VertexSide const &other) {
+        FanItem const &begin = other.items.front();
+        return other.fan == side.fan && !begin.isFace && begin.neighbor == end.neighbor &&
+               begin.isLong == end.isLong;
+    });
+    return end.isFace || found == sides.end() ? -1 : int(found - sides.begin());
 }
 
 } // namespace
@@ -196,9 +208,13 @@ void CellFrames::addSides(Index vert, std::vector<SharpCorner> &corners) const {
         for (FanItem const &item : side.items) {
             if (item.isFace) {
                 double const end = angle + (item.isHalf ? 0.5 : 1) * angleOfSide / size;
-                corners.push_back({item.corner, item.half, i, angle, end});
+                corners.push_back({item.corner, item.half, i, angle, end, -1});
                 angle = end;
             }
+        }
+        // On the wide side of a corner du is along the edge where it begins, and dv into the side.
+        if (isCorner && !side.isAllAround && size >= 2) {
+            corners.back().sideOfEnd = findSideBehind(sides, side);
         }
     }
 }
@@ -244,9 +260,9 @@ CornerFrame CellFrames::Get(Index face, int local, int half) const {
     }
     if (found->half < 0 && isCut) {
         auto const angles = part(found->begin, found->end);
-        return {vert, found->side, angles.first, angles.second};
+        return {vert, found->side, angles.first, angles.second, isFirst ? -1 : found->sideOfEnd};
     }
-    return {vert, found->side, found->begin, found->end};
+    return {vert, found->side, found->begin, found->end, found->sideOfEnd};
 }
 
 } // namespace OpenSubdivHex::FarExt::internal

@@ -16,6 +16,9 @@ struct CornerFrame {
     int side;     ///< of the vertex, as FindVertexSides numbers them
     double begin; ///< angle of the edge, or diagonal, to the next vertex of the cell
     double end;   ///< of that to the vertex before
+    /// Where du and dv make no plane with the sharp edge at the end: the side that begins with this edge, whose du is
+    /// along it; else -1.
+    int sideOfEnd = -1;
 };
 
 /// \brief At which angles the edges and diagonals of a level leave its vertices.
@@ -52,6 +55,7 @@ private:
         int side;
         double begin;
         double end;
+        int sideOfEnd;
     };
     static constexpr Index kIsSharp = -1;
 

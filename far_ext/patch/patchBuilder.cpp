@@ -17,6 +17,7 @@
 #include <numeric>
 #include <optional>
 #include <string>
+#include <tuple>
 #include <unordered_map>
 
 namespace OpenSubdivHex::FarExt::internal {
@@ -101,8 +102,8 @@ public:
     PointGroup const &GetGroup(std::size_t i) const { return _groups[i]; }
     std::size_t GetNumGroups() const { return _groups.size(); }
     LimitStencils const &GetStencils() const { return _stencils; }
-    Index FindRow(Index vert, int side) const {
-        return side == 0 ? _rowOfVertex[std::size_t(vert)] : findFurtherRow(vert, side);
+    Index FindRow(CornerFrame const &frame) const {
+        return isOfVertex(frame) ? _rowOfVertex[std::size_t(frame.vert)] : findFurtherRow(frame);
     }
 
 private:
@@ -221,7 +222,15 @@ private:
     CurvePoints const &getPoints(CellSide const &curve) const {
         return (curve.isDiagonal ? _diagonals : _edges)[std::size_t(curve.index)];
     }
-    Index findFurtherRow(Index vert, int side) const;
+    static bool isOfVertex(CornerFrame const &frame) {
+        return frame.side == 0 && frame.sideOfEnd < 0;
+    }
+    static bool isBefore(CornerFrame const &a, CornerFrame const &b) {
+        return std::tie(a.vert, a.side, a.sideOfEnd) < std::tie(b.vert, b.side, b.sideOfEnd);
+    }
+    Index findFurtherRow(CornerFrame const &frame) const;
+    void addTurned(CornerFrame const &frame, LimitRow const &row,
+                   LimitStencils::KeptRow &kept) const;
     Index addCenterRow(CenterRow const &row) {
         _centerRows.push_back(row);
         return Index(_numVertexRows + Index(_centerRows.size()) - 1);
@@ -276,11 +285,8 @@ private:
     std::vector<VertexCode> _codes;
     std::vector<std::uint8_t> _surfaceFaces; // by face and half
     std::vector<Index> _rowOfVertex;
-    struct FurtherRow {
-        Index vert;
-        int side;
-    };
-    std::vector<FurtherRow> _furtherRows; // ascending
+    // Ascending.  Corners of a side have one row, but for the last one of a wide corner.
+    std::vector<CornerFrame> _furtherRows;
     Index _numVertexRows = 0;
     std::vector<CenterRow> _centerRows;
     std::vector<HalfCenterRows> _halfCenters;
@@ -330,17 +336,14 @@ CallStatus PatchBuilder::LevelBuilder::FindLimits() {
     for (PatchCell const &cell : _cells.GetCells(_depth)) {
         for (int corner = 0; corner < getNumCorners(cell); ++corner) {
             CornerFrame const frame = getFrame(cell.face, cell.half, corner);
-            if (frame.side > 0) {
-                _furtherRows.push_back({frame.vert, frame.side});
+            if (!isOfVertex(frame)) {
+                _furtherRows.push_back(frame);
             }
         }
     }
-    auto const isBefore = [](FurtherRow const &a, FurtherRow const &b) {
-        return a.vert != b.vert ? a.vert < b.vert : a.side < b.side;
-    };
     std::sort(_furtherRows.begin(), _furtherRows.end(), isBefore);
     _furtherRows.erase(std::unique(_furtherRows.begin(), _furtherRows.end(),
-                                   [&](FurtherRow const &a, FurtherRow const &b) {
+                                   [](CornerFrame const &a, CornerFrame const &b) {
                                        return !isBefore(a, b) && !isBefore(b, a);
                                    }),
                        _furtherRows.end());
@@ -348,12 +351,8 @@ CallStatus PatchBuilder::LevelBuilder::FindLimits() {
     return CallStatus();
 }
 
-Index PatchBuilder::LevelBuilder::findFurtherRow(Index vert, int side) const {
-    auto const found =
-        std::lower_bound(_furtherRows.begin(), _furtherRows.end(), FurtherRow{vert, side},
-                         [](FurtherRow const &a, FurtherRow const &b) {
-                             return a.vert != b.vert ? a.vert < b.vert : a.side < b.side;
-                         });
+Index PatchBuilder::LevelBuilder::findFurtherRow(CornerFrame const &frame) const {
+    auto const found = std::lower_bound(_furtherRows.begin(), _furtherRows.end(), frame, isBefore);
     return Index(_verts.size()) + Index(found - _furtherRows.begin());
 }
 
@@ -540,7 +539,7 @@ auto PatchBuilder::LevelBuilder::getCellCurve(PatchCell cell, int side) const ->
     for (int end = 0; end < 2; ++end) {
         CornerFrame const frame = getFrame(cell.face, cell.half, side + end);
         verts[end] = frame.vert;
-        result.rows[end] = FindRow(frame.vert, frame.side);
+        result.rows[end] = FindRow(frame);
         result.shape.ends[end] = {end == 0 ? frame.begin : frame.end,
                                   getLength(cell.face, cell.half, side, end)};
         // The side before its end, and the side behind its start.
@@ -641,6 +640,9 @@ CallStatus PatchBuilder::LevelBuilder::FindBorders() {
             auto const getDirection = [&](LevelBuilder const &level, PatchCell of, int side,
                                           int atEnd) {
                 CornerFrame const frame = level.getFrame(of.face, of.half, side + atEnd);
+                if (atEnd == 1 && frame.sideOfEnd >= 0) {
+                    return Direction{frame.vert, frame.sideOfEnd, 0};
+                }
                 return Direction{frame.vert, frame.side, atEnd == 0 ? frame.begin : frame.end};
             };
             directions.push_back(getDirection(*this, cell, 0, ofOwn));
@@ -858,7 +860,7 @@ Index PatchBuilder::LevelBuilder::addHalfCenter(PatchCell const &cell) {
     double const sign = fillRows(0, longSide, result.rows[0]);
     if (size % 2 == 1) {
         CornerFrame const frame = getFrame(cell.face, cell.half, (size + 1) / 2);
-        result.rows[1][0] = FindRow(frame.vert, frame.side);
+        result.rows[1][0] = FindRow(frame);
         result.rows[1][1] = result.rows[1][2] = Far::INDEX_INVALID;
         result.center = MakeHalfCenter(size, longSide.shape, sign, (frame.begin + frame.end) / 2);
     } else {
@@ -890,15 +892,37 @@ void PatchBuilder::LevelBuilder::addAcross(std::vector<Index> const &verts, doub
     }
 }
 
+// Du and dv by which the edge at the end of the frame is along its curve, and that at its begin where \p row has it.
+void PatchBuilder::LevelBuilder::addTurned(CornerFrame const &frame, LimitRow const &row,
+                                           LimitStencils::KeptRow &kept) const {
+    double const begin[2] = {std::cos(frame.begin), std::sin(frame.begin)};
+    double const end[2] = {std::cos(frame.end), std::sin(frame.end)};
+    double const determinant = begin[0] * end[1] - begin[1] * end[0];
+    for (int i = 0; i < row.size; ++i) {
+        double const atBegin = (begin[0] * row.du[i] + begin[1] * row.dv[i]) / determinant;
+        kept.Add(row.sources[i], row.weights[i], end[1] * atBegin, -end[0] * atBegin);
+    }
+    Index sources[PlainNeighborhoodGatherer::kNumRegular];
+    LimitRow const ofCurve = _rows.GetRow(frame.vert, frame.sideOfEnd, sources);
+    for (int i = 0; i < ofCurve.size; ++i) {
+        double const atEnd = ofCurve.du[i] / determinant;
+        kept.Add(ofCurve.sources[i], 0, -begin[1] * atEnd, begin[0] * atEnd);
+    }
+}
+
 LimitRow PatchBuilder::LevelBuilder::getRow(Index number, LimitStencils::KeptRow &kept) const {
     kept.Clear();
     if (number < _numVertexRows) {
         bool const isFirst = number < Index(_verts.size());
-        FurtherRow const vertex = isFirst ? FurtherRow{_verts[std::size_t(number)], 0}
-                                          : _furtherRows[std::size_t(number) - _verts.size()];
+        CornerFrame const vertex = isFirst ? CornerFrame{_verts[std::size_t(number)], 0, 0, 0}
+                                           : _furtherRows[std::size_t(number) - _verts.size()];
         Index sources[PlainNeighborhoodGatherer::kNumRegular];
         LimitRow const row = _rows.GetRow(vertex.vert, vertex.side, sources);
-        kept.Append(row);
+        if (vertex.sideOfEnd >= 0) {
+            addTurned(vertex, row, kept);
+        } else {
+            kept.Append(row);
+        }
         if (isFirst && _builder._constants.HasShares() &&
             !_builder._isInSeveralLevels[std::size_t(vertex.vert)]) {
             addShares(vertex.vert, kept);
@@ -1084,7 +1108,7 @@ CallStatus PatchBuilder::Build() {
         for (Index const vert : level->GetVertices()) {
             if (pointOfVertex[std::size_t(vert)] == Far::INDEX_INVALID) {
                 pointOfVertex[std::size_t(vert)] = _numPoints++;
-                _vertexPoints.push_back({level.get(), level->FindRow(vert, 0)});
+                _vertexPoints.push_back({level.get(), level->FindRow({vert, 0, 0, 0})});
             } else {
                 _isInSeveralLevels[std::size_t(vert)] = 1;
             }

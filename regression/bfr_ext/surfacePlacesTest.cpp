@@ -55,6 +55,43 @@ struct PlacedSurface {
     std::vector<double> points;
 };
 
+/// An L of three quads with height, all of whose outer edges are sharp: on the wide side of its two corners inside there are
+/// three faces.
+Shape makeL() {
+    Shape shape;
+    for (double const z : {0.0, 1.0}) {
+        for (Uv const &xy :
+             {Uv{0, 0}, Uv{1, 0}, Uv{2, 0}, Uv{0, 1}, Uv{1, 1}, Uv{2, 1}, Uv{0, 2}, Uv{1, 2}}) {
+            shape.positions.insert(shape.positions.end(),
+                                   {xy[0], xy[1], z + 0.3 * (2 * z - 1) * xy[0] * xy[1]});
+        }
+    }
+    auto const addFace = [&](std::array<int, 4> const &verts) {
+        shape.faceSizes.push_back(4);
+        shape.faceVertices.insert(shape.faceVertices.end(), verts.begin(), verts.end());
+    };
+    auto const addCrease = [&](int a, int b) {
+        shape.creaseVertexPairs.insert(shape.creaseVertexPairs.end(), {a, b});
+        shape.creaseSharpness.push_back(10);
+    };
+    for (auto const &[a, b, c, d] : {std::array{0, 1, 4, 3}, {1, 2, 5, 4}, {3, 4, 7, 6}}) {
+        addFace({d, c, b, a});
+        addFace({a + 8, b + 8, c + 8, d + 8});
+    }
+    constexpr int kOutline[] = {0, 1, 2, 5, 4, 7, 6, 3};
+    for (int i = 0; i < 8; ++i) {
+        int const a = kOutline[i];
+        int const b = kOutline[(i + 1) % 8];
+        addFace({a, b, b + 8, a + 8});
+        addCrease(a, b);
+        addCrease(a + 8, b + 8);
+        if (a != 1 && a != 3) {
+            addCrease(a, a + 8);
+        }
+    }
+    return shape;
+}
+
 /// Places inside of a face: at some share of the way from its centre to its edges.
 std::vector<Uv> findPlaces(int size, int number, double distance = 1) {
     std::mt19937 random(7);
@@ -247,6 +284,30 @@ TEST_P(SurfacePlacesTest, FacesMeet) {
     EXPECT_GT(numEdges, 100);
 }
 
+// There is no tangent plane, and each side has the curves of its sharp edges.
+TEST_P(SurfacePlacesTest, MeetAtWideCorners) {
+    Shape const shape = makeL();
+    auto const refiner = CreateRefiner(shape, GetParam(), 0, getOptions());
+    auto const factory = SurfaceFactory::Create(*refiner);
+    FarExt::SurfaceFaces const &faces = factory->GetFaces();
+    for (int edge = 0; edge < faces.GetNumEdges(); ++edge) {
+        for (double const t : {0.0, 0.02, 0.08, 0.2, 0.5, 0.7, 0.92, 0.99}) {
+            Vector3 found[2];
+            for (int i = 0; i < 2; ++i) {
+                FarExt::SurfaceFaces::Side const side = faces.GetSide(edge, i);
+                PlacedSurface surface;
+                ASSERT_TRUE(surface.Init(*factory, shape.positions, side.face));
+                bool const isReversed = faces.GetEdge(side.face, side.local).isReversed;
+                Uv uv;
+                surface.surface.GetParameterization().GetEdgeCoord(
+                    side.local, isReversed ? 1 - t : t, uv.data());
+                found[i] = surface.Evaluate(uv)[0];
+            }
+            EXPECT_LT(GetDistance(found[0], found[1]), 1e-12) << "edge " << edge << " " << t;
+        }
+    }
+}
+
 // What a cache has kept of other faces and levels changes no bit.
 TEST_P(SurfacePlacesTest, DoNotDependOnFacesBefore) {
     for (Shape const &shape : {MakeTorus(6, 4, TorusFaces::IrregularTriangles), MakePrism(5)}) {
@@ -431,6 +492,11 @@ TEST(SurfacePlaces, OfAnySizeAndStride) {
     auto const numPoints = std::size_t(surface.GetNumPatchPoints());
     std::vector<float> all(11 * numPoints);
     surface.PreparePatchPoints(data.data(), 11, all.data(), 11);
+    // Points of the mesh may be of the other precision.
+    std::vector<float> ofDoubles(all.size());
+    surface.PreparePatchPoints(std::vector<double>(data.begin(), data.end()).data(), 11,
+                               ofDoubles.data(), 11);
+    EXPECT_EQ(ofDoubles, all);
     float expected[6][11];
     surface.Evaluate(uv, all.data(), 11, expected[0], expected[1], expected[2], expected[3],
                      expected[4], expected[5]);

@@ -48,6 +48,11 @@ void CheckForest(MeshSurfaces<REAL> const &mesh, BfrExt::CellForest const &fores
 template <typename REAL>
 void CheckRates(MeshSurfaces<REAL> const &mesh, Dice &dice);
 
+/// \brief Surfaces at (u, v), by patches of levels 2 to 5: exact at corners of cells, with derivatives that are those of
+/// their points, the same from both faces beside an edge, and the same bits among SurfacePlaces.
+template <typename REAL>
+void CheckPlaces(MeshSurfaces<REAL> const &mesh, Dice &dice);
+
 /// Streams of PatchLevels or of a CellForest: the same bits for any memory and threads, as numbered.
 template <typename REAL, typename SOURCE>
 void CheckStreams(MeshSurfaces<REAL> const &mesh, SOURCE const &source, Dice &dice);
