@@ -8,7 +8,7 @@ namespace OpenSubdivHex::BfrExt::internal {
 
 void GrowingPatch::Start(int size, bool keepsFaces) {
     for (int vert = 0; vert < size; ++vert) {
-        _verts[vert] = {(vert + size - 1) % size, (vert + 1) % size, 1, 1, vert, kNone, vert};
+        _verts[vert] = {(vert + size - 1) % size, (vert + 1) % size, 1, 1, vert, kNone};
         _inner[vert] = vert;
     }
     _size = _numInner = _numMade = size;
@@ -16,6 +16,7 @@ void GrowingPatch::Start(int size, bool keepsFaces) {
     _faces[0] = std::uint8_t(_size);
     std::iota(_faces + 1, _faces + 1 + _size, std::uint8_t(0));
     _numFaceBytes = 1 + _size;
+    std::iota(_corners, _corners + _size, std::int16_t(0));
     std::fill_n(_others, _size, std::int16_t(kNone));
     _numCorners = _size;
 }
@@ -37,7 +38,7 @@ bool GrowingPatch::Add(int inner, int numFaces, std::uint8_t const *sizes) {
     }
     if (numNew == 0) {
         if (_keepsFaces) {
-            joinEdges(_verts[before].corner, center.corner);
+            joinEdges(_corners[before], _corners[vert]);
         }
         return join(before, behind);
     }
@@ -90,7 +91,7 @@ bool GrowingPatch::addVertex(int last, Point const &point) {
     if (_numMade == kMaxVerts) {
         return false;
     }
-    _verts[_numMade] = {kNone, kNone, 1, 0, kNone, kNone, kNone};
+    _verts[_numMade] = {kNone, kNone, 1, 0, kNone, kNone};
     _points[_numMade] = point;
     link(last, _numMade++);
     return true;
@@ -110,7 +111,7 @@ bool GrowingPatch::join(int before, int behind) {
         link(_verts[gone].before, kept);
     } else {
         link(kept, _verts[gone].behind);
-        _verts[kept].corner = _verts[gone].corner;
+        _corners[kept] = _corners[gone];
     }
     _verts[kept].numFaces += _verts[gone].numFaces;
     _verts[gone].same = kept;
@@ -128,10 +129,10 @@ void GrowingPatch::keepFace(int vert, int last, int firstMade, int behind) {
         _others[_numCorners++] = std::int16_t(kNone);
     };
     add(vert);
-    joinEdges(first, _verts[last].corner);
+    joinEdges(first, _corners[last]);
     // The other edges, and that to the vertex where another face follows, are on the boundary.
     auto const addOnBoundary = [&](int ofFace) {
-        _verts[ofFace].corner = _numCorners;
+        _corners[ofFace] = std::int16_t(_numCorners);
         add(ofFace);
     };
     addOnBoundary(last);
@@ -140,7 +141,7 @@ void GrowingPatch::keepFace(int vert, int last, int firstMade, int behind) {
     }
     if (behind != kNone) {
         add(behind);
-        joinEdges(_numCorners - 1, _verts[vert].corner);
+        joinEdges(_numCorners - 1, _corners[vert]);
     }
     face[0] = std::uint8_t(_numCorners - first);
     _numFaceBytes = int(to - _faces);

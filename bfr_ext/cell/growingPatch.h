@@ -63,7 +63,6 @@ private:
         int numFacesBefore; // from where its faces begin to the boundary before
         int inner;          // its number, or kNone
         int same;           // a vertex before, which it turned out to be, or kNone
-        int corner;         // whose edge is the boundary from here on, if faces are kept
     };
     static constexpr int kNone = -1;
 
@@ -91,6 +90,8 @@ private:
     Point _points[kMaxVerts] = {};           // by vertex
     std::uint8_t _faces[kMaxFaceBytes] = {}; // of each its size and vertices
     int _numFaceBytes = 0;
+    std::int16_t _corners[kMaxVerts] =
+        {}; // by vertex, that whose edge is the boundary from there on
     std::int16_t _others[kMaxCorners] = {}; // by corner, that across its edge, or kNone
     int _numCorners = 0;
 };

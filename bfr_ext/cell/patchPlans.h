@@ -8,6 +8,7 @@
 #include "bfr_ext/levelTessellation.h"
 
 #include <algorithm>
+#include <list>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -19,7 +20,8 @@ namespace OpenSubdivHex::BfrExt::internal {
 /// \brief The *plans* that have been asked for: tessellations, with the cells their places lie in, of patches with the same
 /// levels or the same tree.
 ///
-/// Where plans come to take too much memory, those that nobody uses are forgotten.  Any number of threads may use it.
+/// Where plans come to take too much memory, those that nobody uses are forgotten, beginning with the one that was not
+/// asked for longest.  Any number of threads may use it.
 class PatchPlans {
 public:
     using Plan = std::shared_ptr<LevelTessellation const>;
@@ -96,6 +98,7 @@ private:
         std::optional<LevelTessellation> tessellation;
     };
     struct Entry {
+        std::vector<int> key;
         std::shared_ptr<MadePlan> plan;
         std::size_t size;
     };
@@ -113,25 +116,32 @@ private:
 
     std::shared_ptr<MadePlan> find(std::vector<int> const &key, std::size_t size) {
         std::lock_guard<std::mutex> const lock(_mutex);
-        auto entry = _plans.find(key);
-        if (entry == _plans.end()) {
-            makeRoom(size);
-            entry = _plans.emplace(key, Entry{std::make_shared<MadePlan>(), size}).first;
-            _memory += size;
+        auto const found = _places.find(key);
+        if (found != _places.end()) {
+            _plans.splice(_plans.begin(), _plans, found->second);
+            return _plans.front().plan;
         }
-        return entry->second.plan;
+        makeRoom(size);
+        _plans.push_front({key, std::make_shared<MadePlan>(), size});
+        try {
+            _places.emplace(key, _plans.begin());
+        } catch (...) {
+            _plans.pop_front();
+            throw;
+        }
+        _memory += size;
+        return _plans.front().plan;
     }
 
     // For something of this size, as far as plans are not in use.
     void makeRoom(std::size_t size) {
-        bool const isFull = _memory + size > _maxMemory;
-        for (auto entry = _plans.begin(); isFull && entry != _plans.end();) {
+        for (auto entry = _plans.end(); entry != _plans.begin() && _memory + size > _maxMemory;) {
+            --entry;
             // It is given away under the lock alone, so that nobody can begin to use it meanwhile.
-            if (entry->second.plan.use_count() == 1) {
-                _memory -= entry->second.size;
+            if (entry->plan.use_count() == 1) {
+                _memory -= entry->size;
+                _places.erase(entry->key);
                 entry = _plans.erase(entry);
-            } else {
-                ++entry;
             }
         }
     }
@@ -140,7 +150,8 @@ private:
     std::size_t const _maxMemory;
     std::size_t _memory = 0;
     std::mutex _mutex;
-    std::map<std::vector<int>, Entry> _plans;
+    std::list<Entry> _plans; // the one that was asked for last comes first
+    std::map<std::vector<int>, std::list<Entry>::iterator> _places;
 };
 
 } // namespace OpenSubdivHex::BfrExt::internal
