@@ -74,11 +74,11 @@ enum class CellVisibility : unsigned char {
 /// **Culling** leaves unseen cells coarse: meshes stay closed.  A face is outside of the picture if all its control points
 /// are on the outer side of one plane through a side of the picture, or behind the eye: their hull contains the surface.
 /// A cell of later levels is outside if a ball around it is, and faces away if (Du x Dv) . (eye - p) < 0 for all its
-/// points p.  Both are estimated: the ball holds the corners of the cells one or two steps on, with a margin of a third to
-/// a half of its radius, and normals are taken to spread 3.25 times as far as those at the corners of the polygons there.  Where
-/// these spread by more than 45 degrees, a cell does not count as facing away.  A fold that is narrower than these
-/// polygons, as beside a corner of a half turn, may be missed.  A part of a sharp edge or boundary is outside as a face is, by
-/// the control points of its curve.  Whole faces and sharp edges never count as facing away.
+/// points p.  Both are estimated: the ball holds the corners of the cells one or two steps on, with a margin of a third or
+/// a half of its radius, and normals are taken to spread 3.25 times as far as those at corners of the polygons there.  A cell
+/// whose normals spread there by more than 45 degrees does not count as facing away.  Folds that are narrower than these
+/// polygons, as beside a corner of a half turn, may be missed.  A part of a sharp edge or boundary is outside as a face is,
+/// by the control points of its curve.  Whole faces and sharp edges never count as facing away.
 ///
 /// **Animation.**  Given the tree of the last frame, a cell that is refined there stays refined until the
 /// error is below a fraction of the pixels that are allowed, so that nothing flickers; and so do sharp edges and

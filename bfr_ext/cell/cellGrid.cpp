@@ -133,8 +133,8 @@ void CellGrid::measure(std::vector<double> const &samples, Cell const &cell,
     Vector3 const normal = length > 0 ? Scale(area, 1 / length) : Vector3{0, 0, 1};
     Vector3 const center = Add(origin, Scale(sum, 1 / double(cell.corners.size())));
     double radius = 0; // square
-    double least = std::numeric_limits<double>::infinity();
-    double largest = -least;
+    double least = 0; // the height of the center, which lies between those of corners
+    double largest = 0;
     for (int const sample : cell.samples) {
         Vector3 const d = Subtract(getSample(sample), center);
         radius = std::max(radius, Dot(d, d));
@@ -171,8 +171,7 @@ CellFacing CellGrid::FindFacing(std::vector<double> const &samples, int cell,
                                 std::vector<Vector3> normals) const {
     // A margin for normals between those at samples.
     constexpr double kFactor = 3.25;
-    // Where the surface bends by more than half a right angle, too little is known of it.
-    constexpr double kLargest = 1;
+    constexpr double kLargest = 1; // where it bends further, too little is known of the surface
     Vector3 sum = {};
     std::vector<Vector3> places;
     auto const addPolygons = [&](auto const &self, Cell const &part) -> void {
