@@ -133,7 +133,7 @@ void CellGrid::measure(std::vector<double> const &samples, Cell const &cell,
     Vector3 const normal = length > 0 ? Scale(area, 1 / length) : Vector3{0, 0, 1};
     Vector3 const center = Add(origin, Scale(sum, 1 / double(cell.corners.size())));
     double radius = 0; // square
-    double least = 0; // the height of the center, which lies between those of corners
+    double least = 0;  // the height of the center, which lies between those of corners
     double largest = 0;
     for (int const sample : cell.samples) {
         Vector3 const d = Subtract(getSample(sample), center);
