@@ -90,8 +90,8 @@ private:
     Point _points[kMaxVerts] = {};           // by vertex
     std::uint8_t _faces[kMaxFaceBytes] = {}; // of each its size and vertices
     int _numFaceBytes = 0;
-    std::int16_t _corners[kMaxVerts] =
-        {}; // by vertex, that whose edge is the boundary from there on
+    // By vertex, the corner whose edge is the boundary from there on.
+    std::int16_t _corners[kMaxVerts] = {};
     std::int16_t _others[kMaxCorners] = {}; // by corner, that across its edge, or kNone
     int _numCorners = 0;
 };

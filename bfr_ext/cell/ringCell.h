@@ -130,7 +130,7 @@ struct RingEdge {
     RingCell const *longEdges[2];
 };
 
-/// Product of the first step of a plain base face.  Far fewer than types of base faces differ.
+/// Product of the first step of a plain base face.  There are far fewer of them than types of base faces.
 struct RingFace {
     explicit RingFace(MemoryCount &memory) : patterns(memory) {}
 
@@ -224,7 +224,7 @@ public:
     VertexRings const &GetRings() const { return _rings; }
     /// What is made on demand: the edges and vertices that are in a lattice.
     PatternTable &GetPatterns() const { return _patterns; }
-    /// The same of all faces with these children: patches.
+    /// What all faces with these children share, made on demand: patches.
     PatternTable &GetPatternsOfChildren() const { return _cells->patterns; }
     std::size_t GetHeapSize() const { return internal::GetHeapSize(_rings); }
     /// Whether a vertex and its neighbours are in a regular lattice, or both vertices of an edge.

@@ -49,7 +49,7 @@ public:
         std::vector<Number> program; // and what longer ones before had behind it
         std::vector<int> ring;
         std::vector<int> sizes;
-        std::vector<Number> around; // the points around a neighbor, and one whose numbers are 0
+        std::vector<Number> around; // the points around a neighbour, and one whose numbers are 0
     };
 
     Builder(VertexRings &rings, PatchCorners const &corners, RingMasks &masks, Scratch &scratch)
@@ -147,7 +147,7 @@ private:
         ofKind.push_back({numFaces, size, addMask(of)});
         return ofKind.back().mask;
     }
-    // By the sizes of the faces, which are the key.
+    // Adds the mask of faces with the sizes of the key.
     Number addMask(RingMasks::Of of) {
         std::vector<int> const &sizes = _scratch.key;
         _scratch.masks.push_back(&_masks.Find<Mask>(of, sizes, [&]() -> Mask {

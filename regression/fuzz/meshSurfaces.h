@@ -13,6 +13,22 @@
 
 namespace OpenSubdivHex::Regression {
 
+/// Makes the surface of a face, for one of the values of a case.
+/// \return  whether it has one; \p status says why not
+template <typename REAL>
+bool InitSurface(BfrExt::SurfaceFactory const &factory, int face,
+                 OracleLevels::Values const &values, BfrExt::Surface<REAL> *surface,
+                 FarExt::CallStatus *status) {
+    switch (values.mode) {
+    case FarExt::INTERPOLATE_VERTEX:
+        return factory.InitVertexSurface(face, surface, status);
+    case FarExt::INTERPOLATE_VARYING:
+        return factory.InitVaryingSurface(face, surface, status);
+    default:
+        return factory.InitFaceVaryingSurface(face, surface, values.channel, status);
+    }
+}
+
 /// The surfaces of all base faces, for one of the values of a case, with their control points.
 template <typename REAL>
 struct MeshSurfaces {

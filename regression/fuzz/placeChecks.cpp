@@ -85,17 +85,7 @@ private:
     void prepare(int face) {
         Surface<REAL> &surface = _surfaces[std::size_t(face)];
         FarExt::CallStatus status;
-        switch (_mesh.values.mode) {
-        case FarExt::INTERPOLATE_VERTEX:
-            _factory->InitVertexSurface(face, &surface, &status);
-            break;
-        case FarExt::INTERPOLATE_VARYING:
-            _factory->InitVaryingSurface(face, &surface, &status);
-            break;
-        default:
-            _factory->InitFaceVaryingSurface(face, &surface, _mesh.values.channel, &status);
-        }
-        if (!surface.IsValid()) {
+        if (!InitSurface(*_factory, face, _mesh.values, &surface, &status)) {
             Fail("face ", face, " has no surface: ", status.GetErrorMessage());
         }
         std::vector<REAL> &points = _points[std::size_t(face)];
@@ -339,10 +329,9 @@ private:
             if (!places) {
                 Fail("no places");
             }
-            FarExt::SetNumThreads(numThreads);
+            FarExt::ExecutorScope const threads(nullptr, numThreads);
             std::vector<REAL> p(numNumbers), du(numNumbers), dv(numNumbers);
             places->Evaluate(_mesh.points.data(), _size, p.data(), du.data(), dv.data(), _size);
-            FarExt::SetNumThreads(1);
             for (int i = 0; i < count; ++i) {
                 ReferenceValues const expected =
                     evaluate(faces[std::size_t(i)], &uvs[2 * std::size_t(i)]);

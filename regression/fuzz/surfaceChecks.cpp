@@ -27,19 +27,6 @@ namespace {
 /// Evaluates values of two numbers, or three, with derivatives.
 constexpr int kMaxPointSize = 3;
 
-template <typename REAL>
-bool initSurface(BfrExt::SurfaceFactory const &factory, int face,
-                 OracleLevels::Values const &values, Surface<REAL> *surface, CallStatus *status) {
-    switch (values.mode) {
-    case FarExt::INTERPOLATE_VERTEX:
-        return factory.InitVertexSurface(face, surface, status);
-    case FarExt::INTERPOLATE_VARYING:
-        return factory.InitVaryingSurface(face, surface, status);
-    default:
-        return factory.InitFaceVaryingSurface(face, surface, values.channel, status);
-    }
-}
-
 /// A hole has no surface, and no face at a boundary of the paper's rule has one.
 bool isToHaveSurface(OracleLevels const &levels, BfrExt::SurfaceFactory const &factory, int face) {
     TopologyLevel const &base = factory.GetLevel();
@@ -343,7 +330,7 @@ MeshSurfaces<REAL>::MeshSurfaces(OracleLevels const &levels,
     controlPoints.resize(surfaces.size());
     for (int face = 0; face < factory->GetNumFaces(); ++face) {
         Surface<REAL> &surface = surfaces[std::size_t(face)];
-        bool const isMade = initSurface(*factory, face, values, &surface, &status);
+        bool const isMade = InitSurface(*factory, face, values, &surface, &status);
         bool const isToHave = isToHaveSurface(levels, *factory, face);
         // Of a vertex that comes apart, fans of values may lie inside where others are at the boundary.
         bool const mayHave = values.mode == FarExt::INTERPOLATE_FACE_VARYING && isMade;
